@@ -1,0 +1,25 @@
+"""Errors meant to be read by people: one sentence that says what was wrong, where, and what would be right."""
+
+
+class MrtaError(ValueError):
+    """Base of every error this package raises about its input. The command line prints it without a traceback."""
+
+
+class ScenarioError(MrtaError):
+    """A scenario, or a file that should hold one, breaks a rule of the problem."""
+
+
+class PlanError(MrtaError):
+    """A plan does not fit its scenario: wrong robots, unknown tasks, or a task taken twice."""
+
+
+class ActionError(MrtaError):
+    """An agent chose something it may not choose now."""
+
+
+class ConfigError(MrtaError):
+    """A configuration, checkpoint or option has a value that cannot be used."""
+
+
+class MissingExtraError(MrtaError, ImportError):
+    """An optional dependency is needed and absent; the message names the extra that brings it."""

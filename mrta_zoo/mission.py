@@ -1,0 +1,223 @@
+"""The dynamics of one mission: who acts next, what it may choose, what its choice leads to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import get_args
+
+import numpy as np
+import numpy.typing as npt
+
+from mrta_zoo.errors import ActionError
+from mrta_zoo.rules import (
+    MaskReason,
+    MaskRule,
+    Status,
+    check_mask_rule,
+    finish_time,
+    may_choose,
+    task_cost,
+    travel_time,
+)
+from mrta_zoo.scenario import FloatArray, Scenario
+
+BoolArray = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Finished:
+    """A robot finished a task while the clock moved on."""
+
+    robot: int
+    task: int
+    time: float
+    completed: bool
+    """Whether it finished by the deadline."""
+
+
+class Mission:
+    """A scenario under way. Event-driven: the robot that becomes free first acts next, ties to the lowest index.
+
+    >>> mission = Mission(scenario)
+    >>> while not mission.done:
+    ...     mission.assign(int(mission.mask(mission.actor).argmax()))
+
+    Attributes:
+        scenario: the scenario.
+        mask_rule: which untaken tasks a robot may choose, see `rules.MaskRule`.
+        time: the mission clock, in time units; at the end, the makespan.
+        actor: the robot to act now, or -1 when the mission is over.
+        ready: M floats, when each robot is (or will be) free.
+        position: (M, 2) where each robot is, or is heading for.
+        routes: for each robot the tasks it has taken, in order.
+        heading: for each robot the task it is on, or -1 if it has none under way.
+        retired: for each robot whether it was free and found nothing left to choose.
+        taken_by: (N,) the robot that took each task, or -1.
+        finish: (N,) when each taken task is finished; NaN for the others.
+        status: (N,) int8 `rules.Status` of each task at `time`.
+        finish_if: (M, N) when each robot would finish each task, were it its next.
+    """
+
+    def __init__(self, scenario: Scenario, mask_rule: MaskRule = "feasible") -> None:
+        if mask_rule not in get_args(MaskRule):
+            raise check_mask_rule(mask_rule)
+        n, m = scenario.num_tasks, scenario.num_robots
+        self.scenario = scenario
+        self.mask_rule: MaskRule = mask_rule
+        self.time = 0.0
+        self.actor = -1
+        self.ready = [0.0] * m
+        self.position: FloatArray = scenario.robot_xy.copy()
+        self.routes: list[list[int]] = [[] for _ in range(m)]
+        self.heading = [-1] * m
+        self.retired = [False] * m
+        self.taken_by = np.full(n, -1, dtype=np.int64)
+        self.finish: FloatArray = np.full(n, np.nan)
+        self.status = np.full(n, Status.ACTIVE, dtype=np.int8)
+        self.finish_if: FloatArray = np.empty((m, n))
+        self._untaken: BoolArray = np.ones(n, dtype=np.bool_)
+        self._allowed: BoolArray = np.empty((m, n), dtype=np.bool_)
+        self._by_deadline = np.argsort(scenario.deadline, kind="stable")
+        self._passed = 0  # how many of `_by_deadline` lie before the clock
+        self._work: FloatArray = scenario.workload[None, :] / scenario.capacity[:, None]
+        for robot in range(m):
+            self._look_ahead(robot)
+        self.advance()
+
+    @property
+    def done(self) -> bool:
+        """Whether every robot is retired."""
+        return self.actor < 0
+
+    def mask(self, robot: int) -> BoolArray:
+        """(N,) what `robot` may choose when it is next free, as far as is known now."""
+        return self._untaken & self._allowed[robot]
+
+    def masks(self) -> BoolArray:
+        """(M, N) the masks of all robots."""
+        return self._untaken & self._allowed
+
+    def free(self) -> list[int]:
+        """The robots that are free now and have something to choose, in index order."""
+        return [
+            robot
+            for robot, ready in enumerate(self.ready)
+            if ready == self.time and not self.retired[robot] and self.mask(robot).any()
+        ]
+
+    def reasons(self, robot: int) -> npt.NDArray[np.int8]:
+        """(N,) `rules.MaskReason` of each task for `robot`."""
+        deadline = self.scenario.deadline
+        reasons = np.full(len(deadline), MaskReason.TOO_LATE, dtype=np.int8)
+        reasons[deadline < self.ready[robot]] = MaskReason.DEADLINE_PASSED
+        reasons[~self._untaken] = MaskReason.TAKEN
+        reasons[self.mask(robot)] = MaskReason.CHOOSABLE
+        return reasons
+
+    def assign(self, task: int) -> list[Finished]:
+        """Let the acting robot take `task` and move the clock on to the next actor.
+
+        Returns:
+            What was finished on the way, in order of time, then robot.
+
+        Raises:
+            ActionError: if the mission is over or the robot may not choose this task.
+        """
+        self.take(self.actor, task)
+        return self.advance()
+
+    def take(self, robot: int, task: int) -> None:
+        """Let a free `robot` take `task`, without moving the clock on (for robots that choose at once).
+
+        Raises:
+            ActionError: if the robot is not free, or may not choose this task.
+        """
+        self._check(robot, task)
+        place = self.scenario.task_xy[task]
+        finish = float(self.finish_if[robot, task])
+        self._untaken[task] = False
+        self.taken_by[task] = robot
+        self.finish[task] = finish
+        self.status[task] = Status.ASSIGNED
+        self.routes[robot].append(task)
+        self.heading[robot] = task
+        self.position[robot] = place
+        self.ready[robot] = finish
+        self._look_ahead(robot)
+
+    def advance(self) -> list[Finished]:
+        """Move the clock to the next robot that is free and has a choice, retiring those that have none.
+
+        Returns:
+            What was finished on the way, in order of time, then robot.
+        """
+        while True:
+            waiting = [
+                (ready, robot) for robot, ready in enumerate(self.ready) if not self.retired[robot]
+            ]
+            if not waiting:
+                self.actor = -1
+                break
+            self.time, self.actor = min(waiting)
+            if self.mask(self.actor).any():
+                break
+            self.retired[self.actor] = True
+        return self._finish_until(self.time)
+
+    def cost(self) -> float:
+        """The objective so far, Eq. 1 of the paper; final once the mission is `done`."""
+        taken = self.taken_by >= 0
+        deadline = self.scenario.deadline
+        terms = task_cost(taken, self.finish, deadline, self.time, np.where, np.maximum)
+        return float(np.sum(terms))
+
+    def completed(self) -> int:
+        """Number of taken tasks that finish by their deadline, including those still under way."""
+        return int(np.count_nonzero(self.finish <= self.scenario.deadline))
+
+    def _look_ahead(self, robot: int) -> None:
+        scenario = self.scenario
+        offset = scenario.task_xy - self.position[robot]
+        travel = travel_time(offset[:, 0], offset[:, 1], scenario.speed[robot], np.sqrt)
+        ready = self.ready[robot]
+        self.finish_if[robot] = finish = finish_time(ready, travel, self._work[robot])
+        self._allowed[robot] = may_choose(self.mask_rule, finish, ready, scenario.deadline)
+
+    def _finish_until(self, time: float) -> list[Finished]:
+        finished = []
+        deadline = self.scenario.deadline
+        for robot, task in enumerate(self.heading):
+            if task >= 0 and self.ready[robot] <= time:
+                completed = bool(self.ready[robot] <= deadline[task])
+                self.status[task] = Status.COMPLETED if completed else Status.MISSED
+                self.heading[robot] = -1
+                finished.append(Finished(robot, task, self.ready[robot], completed))
+        finished.sort(key=lambda event: (event.time, event.robot))
+        while self._passed < len(deadline) and deadline[self._by_deadline[self._passed]] < time:
+            task = int(self._by_deadline[self._passed])
+            if self.status[task] == Status.ACTIVE:
+                self.status[task] = Status.MISSED
+            self._passed += 1
+        return finished
+
+    def _check(self, robot: int, task: int) -> None:
+        if self.actor < 0:
+            raise ActionError(f"robot {robot} chose task {task}, but the mission is over")
+        if not 0 <= robot < self.scenario.num_robots:
+            raise ActionError(f"there is no robot {robot}; the scenario has {self.scenario.num_robots}")
+        if self.retired[robot] or self.ready[robot] != self.time:
+            raise ActionError(
+                f"robot {robot} is not free at time {self.time:g}; robot {self.actor} is to act"
+            )
+        if not 0 <= task < self.scenario.num_tasks:
+            raise ActionError(
+                f"robot {robot} chose task {task}; tasks are numbered 0 to {self.scenario.num_tasks - 1}"
+            )
+        if not self.mask(robot)[task]:
+            reason = MaskReason(int(self.reasons(robot)[task])).name.lower().replace("_", " ")
+            choices = np.flatnonzero(self.mask(robot)).tolist()
+            shown = ", ".join(map(str, choices[:10])) + (", …" if len(choices) > 10 else "")
+            raise ActionError(
+                f"robot {robot} may not choose task {task} at time {self.time:g}: {reason}; "
+                f"its choices are {shown or 'none'}"
+            )

@@ -1,0 +1,26 @@
+"""A plan: for each robot the tasks it does, in order. The common currency of all solvers and policies."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Who does what, in which order.
+
+    Attributes:
+        routes: one tuple of task indices for each robot of the scenario; empty if the robot stays where it is.
+        scenario: name of the scenario it was made for.
+        method: name of the method that made it.
+    """
+
+    routes: tuple[tuple[int, ...], ...]
+    scenario: str = ""
+    method: str = ""
+
+    @classmethod
+    def of(cls, routes: Sequence[Sequence[int]], scenario: str = "", method: str = "") -> Plan:
+        """A plan from any nested sequence of task indices."""
+        return cls(tuple(tuple(int(task) for task in route) for route in routes), scenario, method)
