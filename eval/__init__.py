@@ -1,1 +1,1 @@
-"""."""
+"""Comparing methods: every plan is scored by the verifier and by nothing else."""

@@ -23,6 +23,10 @@ from mrta_zoo.scenario import FloatArray, Scenario
 
 BoolArray = npt.NDArray[np.bool_]
 
+# As plain integers: looking up a member of an enumeration takes as long as a step of arithmetic on all tasks.
+_ACTIVE, _ASSIGNED, _COMPLETED, _MISSED = (int(status) for status in Status)
+_CHOOSABLE, _TAKEN, _DEADLINE_PASSED, _TOO_LATE = (int(reason) for reason in list(MaskReason)[:4])
+
 
 @dataclass(frozen=True, slots=True)
 class Finished:
@@ -36,7 +40,7 @@ class Finished:
 
 
 class Mission:
-    """A scenario under way. Event-driven: the robot that becomes free first acts next, ties to the lowest index.
+    """A scenario under way. Event-driven: the robot that is free first acts next, ties to the lowest index.
 
     >>> mission = Mission(scenario)
     >>> while not mission.done:
@@ -73,12 +77,14 @@ class Mission:
         self.retired = [False] * m
         self.taken_by = np.full(n, -1, dtype=np.int64)
         self.finish: FloatArray = np.full(n, np.nan)
-        self.status = np.full(n, Status.ACTIVE, dtype=np.int8)
+        self.status = np.full(n, _ACTIVE, dtype=np.int8)
         self.finish_if: FloatArray = np.empty((m, n))
         self._untaken: BoolArray = np.ones(n, dtype=np.bool_)
         self._allowed: BoolArray = np.empty((m, n), dtype=np.bool_)
-        self._by_deadline = np.argsort(scenario.deadline, kind="stable")
+        order = np.argsort(scenario.deadline, kind="stable")
+        self._by_deadline = list(zip(scenario.deadline[order].tolist(), order.tolist(), strict=True))
         self._passed = 0  # how many of `_by_deadline` lie before the clock
+        self._x, self._y = np.ascontiguousarray(scenario.task_xy.T)
         self._work: FloatArray = scenario.workload[None, :] / scenario.capacity[:, None]
         for robot in range(m):
             self._look_ahead(robot)
@@ -91,27 +97,34 @@ class Mission:
 
     def mask(self, robot: int) -> BoolArray:
         """(N,) what `robot` may choose when it is next free, as far as is known now."""
-        return self._untaken & self._allowed[robot]
+        mask: BoolArray = self._untaken & self._allowed[robot]
+        return mask
 
     def masks(self) -> BoolArray:
         """(M, N) the masks of all robots."""
         return self._untaken & self._allowed
 
     def free(self) -> list[int]:
-        """The robots that are free now and have something to choose, in index order."""
+        """The robots that are free now and have something to choose, in index order.
+
+        Not one that took a task since the last `advance`, even if the task needs no time.
+        """
         return [
             robot
             for robot, ready in enumerate(self.ready)
-            if ready == self.time and not self.retired[robot] and self.mask(robot).any()
+            if ready == self.time
+            and not self.retired[robot]
+            and self.heading[robot] < 0
+            and self.mask(robot).any()
         ]
 
     def reasons(self, robot: int) -> npt.NDArray[np.int8]:
         """(N,) `rules.MaskReason` of each task for `robot`."""
         deadline = self.scenario.deadline
-        reasons = np.full(len(deadline), MaskReason.TOO_LATE, dtype=np.int8)
-        reasons[deadline < self.ready[robot]] = MaskReason.DEADLINE_PASSED
-        reasons[~self._untaken] = MaskReason.TAKEN
-        reasons[self.mask(robot)] = MaskReason.CHOOSABLE
+        reasons = np.full(len(deadline), _TOO_LATE, dtype=np.int8)
+        reasons[deadline < self.ready[robot]] = _DEADLINE_PASSED
+        reasons[~self._untaken] = _TAKEN
+        reasons[self.mask(robot)] = _CHOOSABLE
         return reasons
 
     def assign(self, task: int) -> list[Finished]:
@@ -138,7 +151,7 @@ class Mission:
         self._untaken[task] = False
         self.taken_by[task] = robot
         self.finish[task] = finish
-        self.status[task] = Status.ASSIGNED
+        self.status[task] = _ASSIGNED
         self.routes[robot].append(task)
         self.heading[robot] = task
         self.position[robot] = place
@@ -152,14 +165,12 @@ class Mission:
             What was finished on the way, in order of time, then robot.
         """
         while True:
-            waiting = [
-                (ready, robot) for robot, ready in enumerate(self.ready) if not self.retired[robot]
-            ]
+            waiting = [(ready, robot) for robot, ready in enumerate(self.ready) if not self.retired[robot]]
             if not waiting:
                 self.actor = -1
                 break
             self.time, self.actor = min(waiting)
-            if self.mask(self.actor).any():
+            if np.count_nonzero(self.mask(self.actor)):
                 break
             self.retired[self.actor] = True
         return self._finish_until(self.time)
@@ -177,8 +188,8 @@ class Mission:
 
     def _look_ahead(self, robot: int) -> None:
         scenario = self.scenario
-        offset = scenario.task_xy - self.position[robot]
-        travel = travel_time(offset[:, 0], offset[:, 1], scenario.speed[robot], np.sqrt)
+        x, y = self.position[robot]
+        travel = travel_time(self._x - x, self._y - y, scenario.speed[robot], np.sqrt)
         ready = self.ready[robot]
         self.finish_if[robot] = finish = finish_time(ready, travel, self._work[robot])
         self._allowed[robot] = may_choose(self.mask_rule, finish, ready, scenario.deadline)
@@ -189,31 +200,38 @@ class Mission:
         for robot, task in enumerate(self.heading):
             if task >= 0 and self.ready[robot] <= time:
                 completed = bool(self.ready[robot] <= deadline[task])
-                self.status[task] = Status.COMPLETED if completed else Status.MISSED
+                self.status[task] = _COMPLETED if completed else _MISSED
                 self.heading[robot] = -1
                 finished.append(Finished(robot, task, self.ready[robot], completed))
         finished.sort(key=lambda event: (event.time, event.robot))
-        while self._passed < len(deadline) and deadline[self._by_deadline[self._passed]] < time:
-            task = int(self._by_deadline[self._passed])
-            if self.status[task] == Status.ACTIVE:
-                self.status[task] = Status.MISSED
+        while self._passed < len(self._by_deadline):
+            latest, task = self._by_deadline[self._passed]
+            if latest >= time:
+                break
+            if self.status[task] == _ACTIVE:
+                self.status[task] = _MISSED
             self._passed += 1
         return finished
 
     def _check(self, robot: int, task: int) -> None:
         if self.actor < 0:
-            raise ActionError(f"robot {robot} chose task {task}, but the mission is over")
+            raise ActionError(f"task {task} was chosen, but the mission is over: every robot is retired")
         if not 0 <= robot < self.scenario.num_robots:
             raise ActionError(f"there is no robot {robot}; the scenario has {self.scenario.num_robots}")
         if self.retired[robot] or self.ready[robot] != self.time:
             raise ActionError(
                 f"robot {robot} is not free at time {self.time:g}; robot {self.actor} is to act"
             )
+        if self.heading[robot] >= 0:
+            raise ActionError(
+                f"robot {robot} has just taken task {self.heading[robot]} and cannot take task {task} too; "
+                "advance the mission first"
+            )
         if not 0 <= task < self.scenario.num_tasks:
             raise ActionError(
                 f"robot {robot} chose task {task}; tasks are numbered 0 to {self.scenario.num_tasks - 1}"
             )
-        if not self.mask(robot)[task]:
+        if not (self._untaken[task] and self._allowed[robot, task]):
             reason = MaskReason(int(self.reasons(robot)[task])).name.lower().replace("_", " ")
             choices = np.flatnonzero(self.mask(robot)).tolist()
             shown = ", ".join(map(str, choices[:10])) + (", …" if len(choices) > 10 else "")

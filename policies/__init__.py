@@ -1,1 +1,1 @@
-"""."""
+"""Policies and solvers: heuristics, and networks that share one set of weights among all robots."""

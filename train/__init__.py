@@ -1,1 +1,1 @@
-"""."""
+"""Parameter-shared REINFORCE: configuration, baselines, trainer, checkpoints."""

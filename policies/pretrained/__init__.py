@@ -1,1 +1,1 @@
-"""."""
+"""Trained weights that ship with the package, each with its configuration and model card."""

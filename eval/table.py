@@ -1,0 +1,64 @@
+"""Rows as tables for people: means by number of tasks and robots, one column for each method."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from statistics import fmean
+
+from rich import box
+from rich.table import Table
+
+from mrta_zoo.eval.rows import Row
+
+Cell = Callable[[Sequence[Row]], str]
+
+
+def summary_tables(rows: Sequence[Row], best_known: Mapping[str, int] | None = None) -> list[Table]:
+    """Mean completion, share of the best known plan, and planning time.
+
+    Args:
+        rows: of any methods and cases.
+        best_known: the most tasks that are known to be completed in a case, by the case's name. Only cases in it
+            count in the table of shares, which is left out if there are none.
+    """
+    known = {name: value for name, value in (best_known or {}).items() if value > 0}
+    tables = [_table("Tasks completed, mean %", rows, lambda group: _percent([row.completion for row in group]))]
+    compared = [row for row in rows if row.case in known]
+    if compared:
+
+        def share(group: Sequence[Row]) -> str:
+            return _percent([row.completed / known[row.case] for row in group])
+
+        tables.append(_table("Share of the best known plan's tasks, mean %", compared, share))
+    tables.append(
+        _table("Planning time, mean milliseconds", rows, lambda group: f"{1000 * fmean(r.seconds for r in group):.1f}")
+    )
+    return tables
+
+
+def _table(title: str, rows: Sequence[Row], cell: Cell) -> Table:
+    methods = list(dict.fromkeys(row.method for row in rows))
+    sizes = sorted({(row.tasks, row.robots) for row in rows})
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, title_style="bold", pad_edge=False)
+    for heading in ("tasks", "robots", "cases", *methods):
+        table.add_column(heading, justify="right", overflow="fold")
+    for size in sizes:
+        group = [row for row in rows if (row.tasks, row.robots) == size]
+        last = size == sizes[-1] and len(sizes) > 1
+        table.add_row(*map(str, size), *_cells(group, methods, cell), end_section=last)
+    if len(sizes) > 1:
+        table.add_row("all", "", *_cells(rows, methods, cell))
+    return table
+
+
+def _cells(group: Sequence[Row], methods: Sequence[str], cell: Cell) -> list[str]:
+    """The number of cases, then a cell for each method."""
+    of_method = {method: [row for row in group if row.method == method] for method in methods}
+    return [
+        str(len({row.case for row in group})),
+        *(cell(found) if (found := of_method[method]) else "-" for method in methods),
+    ]
+
+
+def _percent(shares: Sequence[float]) -> str:
+    return f"{100 * fmean(shares):.1f}"

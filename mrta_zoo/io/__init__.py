@@ -1,0 +1,18 @@
+"""Scenarios, plans and benchmark cases as files."""
+
+from mrta_zoo.io.cases import Case, read_cases
+from mrta_zoo.io.files import read_scenario, write_scenario
+from mrta_zoo.io.json_format import PlanScore, ScheduledTask, read_plan, write_plan
+from mrta_zoo.io.taptc import write_taptc
+
+__all__ = [
+    "Case",
+    "PlanScore",
+    "ScheduledTask",
+    "read_cases",
+    "read_plan",
+    "read_scenario",
+    "write_plan",
+    "write_scenario",
+    "write_taptc",
+]

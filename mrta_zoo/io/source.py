@@ -1,0 +1,125 @@
+"""Text of an input file, the numbers in it, and where in it something stands."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from pathlib import Path
+
+from mrta_zoo.errors import MrtaError
+
+StrPath = str | os.PathLike[str]
+
+MAX_BYTES = 64 * 2**20
+"""More than any scenario of a sensible size; it keeps a device file from being read without end."""
+
+# What `float` accepts is wider: "1_0", "infinity", "nan", digits of other scripts.
+_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_COUNT = re.compile(r"[0-9]+")
+
+
+def read_text(path: StrPath, error: type[MrtaError]) -> str:
+    """The file's text, UTF-8 with or without byte order mark, line ends as ``\\n``.
+
+    Raises:
+        error: if there is no such file, it cannot be read, is too large, or holds no text.
+    """
+    try:
+        with open(path, "rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except FileNotFoundError:
+        raise error(f"{path}: there is no such file") from None
+    except IsADirectoryError:
+        raise error(f"{path} is a folder; expected a file") from None
+    except PermissionError:
+        raise error(f"{path}: no permission to read this file") from None
+    except (OSError, ValueError) as problem:  # ValueError: a null character in the path
+        raise error(f"{_printable(path)} cannot be read: {_reason(problem)}") from None
+    if len(data) > MAX_BYTES:
+        raise error(f"{path} is larger than {MAX_BYTES // 2**20} MiB; expected a scenario or plan file")
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as problem:
+        line = data.count(b"\n", 0, problem.start) + 1
+        raise error(
+            f"{path}, line {line}: byte 0x{data[problem.start]:02x} is not UTF-8; expected UTF-8 text"
+        ) from None
+    if "\0" in text:
+        line = text.count("\n", 0, text.index("\0")) + 1
+        raise error(f"{path}, line {line}: holds the byte 0x00, as binary files do; expected text")
+    text = text.replace("\r\n", "\n").replace("\r", "\n")
+    if not text.strip():
+        raise error(f"{path} is empty; expected a scenario or plan")
+    return text
+
+
+def write_text(text: str, path: StrPath, error: type[MrtaError]) -> None:
+    """Write the whole file or, on any failure, leave what was there untouched.
+
+    Raises:
+        error: if the file cannot be written.
+    """
+    path = Path(path)
+    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp") if path.name else path
+    try:
+        if (
+            path.exists() and not path.is_file() and not path.is_dir()
+        ):  # a device or pipe: must not be replaced
+            path.write_text(text, encoding="utf-8")
+            return
+        try:
+            temporary.write_text(text, encoding="utf-8", newline="")
+            os.replace(temporary, path)
+        except BaseException:
+            temporary.unlink(missing_ok=True)
+            raise
+    except (OSError, ValueError) as problem:
+        raise error(f"{_printable(path)} cannot be written: {_reason(problem)}") from None
+
+
+def number(
+    text: str, where: str, what: str, least: float, error: type[MrtaError], strict: bool = False
+) -> float:
+    """The number written as `text`, which must be >= `least` (> if `strict`) and finite.
+
+    Raises:
+        error: if it is not; the message starts with `where` and calls the value `what`.
+    """
+    value = float(text) if _NUMBER.fullmatch(text) else math.nan
+    if not math.isfinite(value) or value < least or (strict and value == least):
+        bound = f"{'>' if strict else '>='} {least:g}"
+        raise error(f"{where}: {what} is {shown(text)}; expected a finite number {bound}")
+    return value + 0.0
+
+
+def count(text: str, where: str, what: str, error: type[MrtaError]) -> int:
+    """The whole number >= 0 written as `text`, in decimal digits.
+
+    Raises:
+        error: if it is none, or has more than 18 digits.
+    """
+    if not _COUNT.fullmatch(text) or len(text) > 18:
+        raise error(f"{where}: {what} is {shown(text)}; expected a whole number >= 0")
+    return int(text)
+
+
+def shown(value: object, most: int = 40) -> str:
+    """How messages show a value: quoted, on one line, and not too long."""
+    if isinstance(value, dict):
+        return "an object"
+    if isinstance(value, list):
+        return f"a list of {len(value)}"
+    if value is None or isinstance(value, bool):
+        return {None: "null", True: "true", False: "false"}[value]
+    if not isinstance(value, str):
+        return repr(value)
+    return repr(value) if len(value) <= most else f"{value[:most]!r}..."
+
+
+def _printable(path: StrPath) -> str:
+    return os.fspath(path).replace("\0", "\\0")
+
+
+def _reason(problem: Exception) -> str:
+    return (getattr(problem, "strerror", None) or str(problem)).lower()

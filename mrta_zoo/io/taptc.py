@@ -1,0 +1,181 @@
+"""Text files of the TAPTC benchmark (Mitiche, Boughaci, Gini 2019): one for the tasks, one for the agents.
+
+Task file: ``m dx dy`` or ``n m dx dy`` (m tasks, n agents, map dx x dy), then m lines
+``id x y workload deadline``. Agent file: ``n dx dy``, then n lines ``id x y capacity``. The ids are each of
+0..N-1 once, in any order, and become the indices. Every robot has speed 1.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+from mrta_zoo.errors import ScenarioError
+from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, assemble, in_id_order
+from mrta_zoo.io.source import StrPath, count, number, read_text, shown, write_text
+from mrta_zoo.scenario import Scenario
+
+_CASE_NAME = re.compile(r"r[0-9]+(a[0-9]+i[0-9]+)")
+_TASK_LINE = "id x y workload deadline"
+_AGENT_LINE = "id x y capacity"
+
+
+def read_taptc(task_path: StrPath, agent_path: StrPath | None = None) -> Scenario:
+    """The scenario of a task file and its agent file, which `find_agent_file` finds if it is not given.
+
+    Raises:
+        ScenarioError: if a file is missing or malformed, or the two do not fit.
+    """
+    tasks = read_task_part(task_path)
+    return assemble(
+        tasks, read_agent_part(agent_path if agent_path is not None else find_agent_file(task_path))
+    )
+
+
+def find_agent_file(task_path: StrPath) -> Path:
+    """The agent file that belongs to a task file, by the layout of the published cases.
+
+    For ``DIR/group1/r11a2i00.txt`` it is the first that exists of ``r11a2i00.txt`` and ``a2i00.txt`` in
+    ``DIR/agent/``, then in ``DIR/group1/agent/``.
+
+    Raises:
+        ScenarioError: if none of them exists.
+    """
+    path = Path(task_path)
+    names = [path.name]
+    if case := _CASE_NAME.fullmatch(path.stem):
+        names.append(case[1] + path.suffix)
+    folders = (Path(os.path.normpath(path.parent / "..")) / "agent", path.parent / "agent")
+    candidates = [folder / name for folder in folders for name in names]
+    for candidate in candidates:
+        if os.path.isfile(candidate):  # unlike Path.is_file it is also False without permission
+            return candidate
+    raise ScenarioError(
+        f"{path}: there is no agent file; looked for {', '.join(map(str, candidates))}; "
+        "name one with --agents"
+    )
+
+
+def read_task_part(path: StrPath) -> Part:
+    """What a task file says.
+
+    Raises:
+        ScenarioError: if it is missing or malformed.
+    """
+    (first, header), *lines = _lines(path)
+    if len(header) not in (3, 4):
+        raise ScenarioError(
+            f"{first}: header {shown(' '.join(header))} has {len(header)} fields; "
+            "expected 'm dx dy' or 'n m dx dy' (m tasks, n agents, map size)"
+        )
+    num_robots = count(header[0], first, "number of agents", ScenarioError) if len(header) == 4 else None
+    num_tasks = count(header[-3], first, "number of tasks", ScenarioError)
+    rows = []
+    for where, fields in lines:
+        hint = "; is this an agent file?" if len(fields) == 4 else ""
+        _check_fields(where, fields, _TASK_LINE, hint)
+        x, y, workload = (
+            number(text, where, what, 0, ScenarioError)
+            for text, what in zip(fields[1:4], ("x", "y", "workload"), strict=True)
+        )
+        deadline = number(fields[4], where, "deadline", 0, ScenarioError, strict=True)
+        index = count(fields[0], where, "task id", ScenarioError)
+        rows.append((index, TaskRow(where, x, y, deadline, workload)))
+    _check_count(path, first, num_tasks, len(rows), "task")
+    return Part(
+        path=str(path),
+        tasks=in_id_order(rows, "task"),
+        map=_map(first, header),
+        name=Path(path).stem,
+        num_robots=num_robots,
+    )
+
+
+def read_agent_part(path: StrPath) -> Part:
+    """What an agent file says.
+
+    Raises:
+        ScenarioError: if it is missing or malformed.
+    """
+    (first, header), *lines = _lines(path)
+    if len(header) != 3:
+        hint = "; is this a task file?" if len(header) == 4 else ""
+        raise ScenarioError(
+            f"{first}: header {shown(' '.join(header))} has {len(header)} fields; "
+            f"expected 'n dx dy' (n agents, map size){hint}"
+        )
+    num_robots = count(header[0], first, "number of agents", ScenarioError)
+    rows = []
+    for where, fields in lines:
+        hint = "; is this a task file?" if len(fields) == 5 else ""
+        _check_fields(where, fields, _AGENT_LINE, hint)
+        x, y = (
+            number(text, where, what, 0, ScenarioError) for text, what in zip(fields[1:3], "xy", strict=True)
+        )
+        capacity = number(fields[3], where, "capacity", 0, ScenarioError, strict=True)
+        index = count(fields[0], where, "agent id", ScenarioError)
+        rows.append((index, RobotRow(where, x, y, capacity, 1.0)))
+    _check_count(path, first, num_robots, len(rows), "agent")
+    return Part(
+        path=str(path), robots=in_id_order(rows, "agent"), map=_map(first, header), name=Path(path).stem
+    )
+
+
+def write_taptc(scenario: Scenario, task_path: StrPath, agent_path: StrPath) -> None:
+    """Write a scenario as a task file and an agent file, exactly; its name is then the task file's.
+
+    Raises:
+        ScenarioError: if a speed is not 1, which the format cannot express, or a file cannot be written.
+    """
+    for robot, speed in enumerate(scenario.speed):
+        if speed != 1:
+            raise ScenarioError(
+                f"{task_path}: robot {robot} has speed {speed:g}; expected 1, "
+                "as TAPTC files hold no speeds (JSON and CSV do)"
+            )
+    side = " ".join(_text(value) for value in scenario.map_size)
+    tasks = [f"{scenario.num_robots} {scenario.num_tasks} {side}"]
+    for index, ((x, y), workload, deadline) in enumerate(
+        zip(scenario.task_xy, scenario.workload, scenario.deadline, strict=True)
+    ):
+        tasks.append(" ".join([str(index), *map(_text, (x, y, workload, deadline))]))
+    agents = [f"{scenario.num_robots} {side}"]
+    for index, ((x, y), capacity) in enumerate(zip(scenario.robot_xy, scenario.capacity, strict=True)):
+        agents.append(" ".join([str(index), *map(_text, (x, y, capacity))]))
+    write_text("\n".join(agents) + "\n", agent_path, ScenarioError)
+    write_text("\n".join(tasks) + "\n", task_path, ScenarioError)
+
+
+def _lines(path: StrPath) -> list[tuple[str, list[str]]]:
+    """Where each line stands and its fields, without blank lines; at least one line."""
+    lines = enumerate(read_text(path, ScenarioError).split("\n"), start=1)
+    return [(f"{path}, line {index}", fields) for index, line in lines if (fields := line.split())]
+
+
+def _check_fields(where: str, fields: list[str], expected: str, hint: str) -> None:
+    if len(fields) != len(expected.split()):
+        raise ScenarioError(
+            f"{where}: {shown(' '.join(fields))} has {len(fields)} fields; "
+            f"expected {len(expected.split())} ({expected}){hint}"
+        )
+
+
+def _check_count(path: StrPath, first: str, promised: int, found: int, what: str) -> None:
+    if promised != found:
+        raise ScenarioError(
+            f"{first}: header says {promised} {what}s; expected {found}, the lines that follow"
+        )
+
+
+def _map(first: str, header: list[str]) -> MapRow:
+    width, height = (
+        number(text, first, what, 0, ScenarioError, strict=True)
+        for text, what in zip(header[-2:], ("map width", "map height"), strict=True)
+    )
+    return MapRow(first, width, height)
+
+
+def _text(value: float) -> str:
+    """The shortest text that reads back as the same number."""
+    return repr(float(value)).removesuffix(".0")

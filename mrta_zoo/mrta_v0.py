@@ -1,0 +1,282 @@
+"""Multi-robot task allocation: robots with places, speeds and work capacities share tasks with deadlines.
+
+=======================  ==============================================================================
+Import                   ``from mrta_zoo import mrta_v0``
+Creation                 ``mrta_v0.env()``, ``mrta_v0.raw_env()``, ``mrta_v0.parallel_env()``, or with
+                         PettingZoo >= 1.27 ``pettingzoo.make("aec", "mrta_zoo/mrta-v0")`` (or "parallel")
+Agents                   ``robot_0`` … ``robot_{max_robots-1}``; 7 possible agents by default
+Actions                  ``Discrete(max_tasks)``; parallel form ``Discrete(max_tasks + 1)``
+Observations             ``Dict`` of tables and ``action_mask``, or a flat ``Box``; float32 in [0, 1]
+State                    ``Box``, float32 in [0, 1]
+Turns                    event-driven: the robot that becomes free first acts next
+Manual control           no
+=======================  ==============================================================================
+
+>>> from mrta_zoo import mrta_v0
+>>> env = mrta_v0.env()
+>>> env.reset(seed=1)
+>>> for agent in env.agent_iter():
+...     observation, reward, termination, truncation, info = env.last()
+...     done = termination or truncation
+...     env.step(None if done else env.action_space(agent).sample(observation["action_mask"]))
+
+A robot that takes task j at time t finishes it at t + distance/speed + workload/capacity. The task is *completed* if
+that is no later than its deadline, else *missed*. A task is taken by one robot, once, at the moment it is chosen.
+
+Turns
+-----
+The next robot to act is the one that becomes free first; ties go to the lowest index. So robots do not act in
+cycles: `agent_selection` may be the same robot twice in a row. A robot that is free and has nothing left to choose is
+retired and never selected again. The mission ends when all are retired.
+
+A scenario may have fewer robots and tasks than there is room for: it then has fewer `agents` (never fewer
+`possible_agents`), and padding actions are masked.
+
+Actions
+-------
+The index of the task to take. Tasks at or above the scenario's number of tasks are padding.
+
+Mask
+----
+``action_mask`` is (max_tasks,) int8, 1 where the agent may choose; never all 0 for the agent that is to act. For the
+others it tells what they may choose when they are next free, as far as is known now. ``mask_rule`` says which of the
+tasks not yet taken may be chosen:
+
+- ``"feasible"`` (default): those that this robot can finish by their deadline;
+- ``"active"``: those whose deadline has not passed;
+- ``"unvisited"``: all, even if late (the paper's rule).
+
+An illegal action ends the episode for everyone in `env()` (PettingZoo's `TerminateIllegalWrapper`): the agent's
+reward is `illegal_reward`, the others' is 0. One outside the action space raises `wrappers.OutOfBoundsError`. In
+`raw_env()` either raises `ActionError`, which names the agent, the action and what is valid, and changes nothing.
+
+Observations
+------------
+``{"observation": {"tasks", "robots", "ego", "mission"}, "action_mask"}``; `mrta_zoo.observation` lists the columns.
+With ``observation="flat"`` it is one vector, the same tables one after another (`observation.split` takes it apart
+again), and the mask is in ``infos[agent]["action_mask"]``. `observe` answers for every possible agent at any time; one
+that the scenario does not have sees an ``ego`` of zeros and an empty mask. `state()` is the vector of tasks, robots and
+mission without what belongs to one observer; its size is ``8 max_tasks + 6 max_robots + 3``.
+
+Rewards
+-------
+- ``"terminal"`` (default): −cost/N to every agent when the mission ends, with the cost of Eq. 1 of the paper;
+- ``"completion"``: 1/N to every agent as each task is completed; sums up to the completion rate;
+- ``"individual"``: 1/N to the robot that completed the task; sums up, over all agents, to the completion rate;
+- a function ``(mission, finished) -> [a number for each robot]``, see `mrta_zoo.rewards`.
+
+A task counts when the clock passes its finish, not when it is chosen.
+
+Termination
+-----------
+All agents terminate together when the mission ends. With ``staggered=True`` each terminates as soon as it retires;
+team rewards then reach only those still there, so that ``"individual"`` is the reward to go with it. Where no robot
+can do anything at the start, all terminate right at the reset, with the reward of a mission that has ended. Nothing
+is ever truncated, except by the wrapper after an illegal action.
+
+Infos
+-----
+All numeric, the same keys for every agent at reset and after every step:
+
+- ``time``: the clock, in time units;
+- ``elapsed``: time since this agent's last decision (since the start, if it made none): the duration of a semi-MDP;
+- ``completed``: number of tasks completed so far by all robots;
+- ``action_mask``: (max_tasks,) int8, as above, for every agent;
+- ``mask_reason``: (max_tasks,) int8, why a task is masked, a `mrta_zoo.rules.MaskReason`: 0 choosable, 1 taken,
+  2 deadline passed, 3 too late for this robot, 4 padding. Judged at the time the robot is next free.
+
+Arguments
+---------
+``env(scenario=None, generator=None, max_tasks=None, max_robots=None, mask_rule="feasible", reward="terminal",
+observation="dict", staggered=False, render_mode=None, illegal_reward=-1.0)``; see `mrta_zoo.settings.Settings`.
+
+`reset(seed=…, options={"scenario": scenario})` plays the given scenario; without it the environment's own, or one drawn
+from its generator. The same seed gives the same episode; without a seed the random generator goes on where it was.
+
+Parallel form
+-------------
+`parallel_env(…)` takes the same arguments and ``on_illegal="terminate"`` or ``"raise"``; see `mrta_zoo.parallel`. It is
+an implementation of its own because PettingZoo's conversion asks for agents that take cyclic turns.
+
+Rendering
+---------
+``"ansi"``: text; ``"human"``: prints it after each step; ``"rgb_array"``: a picture (needs ``mrta_zoo[plot]``).
+
+Version history
+---------------
+* v0: first release (0.1.0)
+"""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+from gymnasium import spaces
+from pettingzoo import AECEnv
+
+from mrta_zoo.errors import ActionError
+from mrta_zoo.mission import Mission
+from mrta_zoo.observation import FloatTable
+from mrta_zoo.parallel import ParallelMrtaEnv
+from mrta_zoo.render import RENDER_MODES, render
+from mrta_zoo.settings import Settings
+from mrta_zoo.world import Info, World
+from mrta_zoo.wrappers import ActionSpaceWrapper, IllegalActionWrapper, OrderWrapper
+
+__all__ = ["env", "parallel_env", "raw_env"]
+
+
+def env(*, illegal_reward: float = -1.0, **options: Any) -> AECEnv[str, Any, Any]:
+    """The environment in PettingZoo's standard wrappers: the one to use.
+
+    Args:
+        illegal_reward: reward of an agent whose illegal action ends the episode.
+        **options: see `mrta_zoo.settings.Settings`.
+
+    Raises:
+        ConfigError: if an option cannot be used.
+    """
+    wrapped = IllegalActionWrapper(raw_env(**options), illegal_reward=illegal_reward)
+    return OrderWrapper(ActionSpaceWrapper(wrapped))
+
+
+def parallel_env(**options: Any) -> ParallelMrtaEnv:
+    """The parallel form: all robots that are free act at once, see `mrta_zoo.parallel`.
+
+    Args:
+        **options: ``on_illegal``, ``illegal_reward``, and those of `mrta_zoo.settings.Settings`.
+
+    Raises:
+        ConfigError: if an option cannot be used.
+    """
+    return ParallelMrtaEnv(**options)
+
+
+class raw_env(AECEnv[str, Any, Any]):  # noqa: N801  (PettingZoo's name for it)
+    """The environment without wrappers.
+
+    Can be pickled and deep-copied at any moment; the copy goes on as the original would.
+
+    Args:
+        **options: see `mrta_zoo.settings.Settings`.
+
+    Raises:
+        ConfigError: if an option cannot be used.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {
+        "name": "mrta_v0",
+        "render_modes": list(RENDER_MODES),
+        "render_fps": 4,
+        "is_parallelizable": False,  # PettingZoo's conversion asks for cyclic turns
+    }
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__()
+        self.settings = settings = Settings.of(options)
+        assert settings.max_tasks is not None
+        self._world = World(settings, num_actions=settings.max_tasks)
+        self.render_mode = settings.render_mode
+        self.possible_agents = list(self._world.names)
+        self.action_spaces = dict(self._world.action_spaces)
+        self.observation_spaces = dict.fromkeys(self.possible_agents, self._world.observation_space)
+        self.state_space = self._world.state_space
+
+    @property
+    def mission(self) -> Mission:
+        """The mission under way, with every detail that observations round off or leave out."""
+        return self._world.mission
+
+    def observation_space(self, agent: str) -> spaces.Space[Any]:
+        """The space of observations; one object for all agents."""
+        self._world.robot(agent)
+        return self._world.observation_space
+
+    def action_space(self, agent: str) -> spaces.Discrete:
+        """``Discrete(max_tasks)``; equal for all agents, but each has an object, and so a seed, of its own."""
+        self._world.robot(agent)
+        return self._world.action_spaces[agent]
+
+    def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
+        """Start an episode.
+
+        Args:
+            seed: seeds the random generator, if given.
+            options: ``{"scenario": scenario}`` to play that one.
+
+        Raises:
+            ConfigError: if an option is unknown or the scenario does not fit.
+        """
+        rewards = self._world.reset(seed, options)
+        self.agents = list(self._world.agents)
+        self.terminations = dict.fromkeys(self.agents, False)
+        self.truncations = dict.fromkeys(self.agents, False)
+        self.rewards = dict.fromkeys(self.agents, 0.0)
+        self._cumulative_rewards = dict.fromkeys(self.agents, 0.0)
+        self._skip_agent_selection = None
+        self._settle(rewards)
+        if self.render_mode == "human":
+            self.render()
+
+    def step(self, action: Any) -> None:
+        """Let the selected robot take a task, or None if it has terminated.
+
+        Raises:
+            ActionError: if it may not; nothing is changed then.
+        """
+        if not getattr(self, "agents", None):
+            raise ActionError(f"there is no agent to take action {action!r}; call reset() first")
+        agent = self.agent_selection
+        if self.terminations[agent] or self.truncations[agent]:
+            self._was_dead_step(action)
+            return
+        world = self._world
+        task = world.as_action(agent, action)
+        try:
+            world.take(world.index[agent], task)
+        except ActionError as error:
+            raise ActionError(f"{agent} sent action {task}: {error}") from None
+        self._cumulative_rewards[agent] = 0.0
+        self._settle(world.advance())
+        if self.render_mode == "human":
+            self.render()
+
+    def observe(self, agent: str) -> Any:
+        """What an agent sees now; any possible agent, at any time after the first reset."""
+        robot = self._world.robot(agent)
+        seen = self._world.seen_by(robot)
+        return seen if self._world.flat else {"observation": seen, "action_mask": self._world.mask(robot)}
+
+    def state(self) -> FloatTable:
+        """(8 max_tasks + 6 max_robots + 3,) float32 in [0, 1]: tasks, robots and mission."""
+        return self._world.state()
+
+    def render(self) -> np.ndarray | str | None:
+        """The mission as text or picture, by `render_mode`."""
+        return render(self.mission, self.render_mode)
+
+    def close(self) -> None:
+        """Nothing to close."""
+
+    def _settle(self, rewards: list[float]) -> None:
+        """Enter the books after the clock has moved: rewards, terminations, infos, who is next."""
+        mission, agents = self._world.mission, self.agents
+        infos = self._world.infos()
+        if len(agents) == len(rewards):
+            self.rewards = dict(zip(agents, rewards, strict=True))
+            self.infos = infos
+        else:  # staggered, and some are gone
+            given = dict(zip(self._world.agents, rewards, strict=True))
+            self.rewards = {agent: given[agent] for agent in agents}
+            self.infos = {agent: infos[agent] for agent in agents}
+        for agent, reward in self.rewards.items():
+            self._cumulative_rewards[agent] += reward
+        if mission.done:
+            self.terminations = dict.fromkeys(agents, True)
+            self.agent_selection = agents[0]
+            return
+        self.agent_selection = self.possible_agents[mission.actor]
+        if self.settings.staggered and any(mission.retired):
+            self.terminations = {agent: mission.retired[self._world.index[agent]] for agent in agents}
+            self._deads_step_first()

@@ -1,0 +1,210 @@
+"""What the AEC and the parallel environment share: the mission under way, who sees what, and why tasks are masked.
+
+Knows robots by index and nothing of turns; `mrta_v0.raw_env` and `parallel.ParallelMrtaEnv` add PettingZoo's books.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from gymnasium import spaces
+
+from mrta_zoo.errors import ActionError, ConfigError
+from mrta_zoo.mission import Finished, Mission
+from mrta_zoo.observation import FloatTable, Observer, flat_space, observation_space, state_space
+from mrta_zoo.rules import MaskReason
+from mrta_zoo.scenario import Scenario
+from mrta_zoo.settings import Settings
+
+Info = dict[str, Any]
+
+# As plain integers: looking up a member of an enumeration is slow.
+_CHOOSABLE, _TAKEN, _NO_TASK = int(MaskReason.CHOOSABLE), int(MaskReason.TAKEN), int(MaskReason.NO_TASK)
+
+
+class World:
+    """The scenario of an episode and the mission on it.
+
+    Attributes:
+        settings: the environment's options, all filled in.
+        names: names of the possible agents, ``robot_0`` to ``robot_{max_robots-1}``.
+        agents: names of those in the current scenario.
+        index: robot index of each name.
+        action_spaces: for each name ``Discrete(num_actions)``, each an object of its own so that it has its own seed.
+        observation_space: the space of every agent's observations.
+        state_space: the space of `state`.
+        completed: number of tasks completed by the clock.
+    """
+
+    def __init__(self, settings: Settings, num_actions: int) -> None:
+        assert settings.max_tasks is not None
+        assert settings.max_robots is not None
+        n, m = settings.max_tasks, settings.max_robots
+        self.settings = settings
+        self.max_tasks = n
+        self.names = [f"robot_{robot}" for robot in range(m)]
+        self.index = {name: robot for robot, name in enumerate(self.names)}
+        self.action_spaces = {name: spaces.Discrete(num_actions) for name in self.names}
+        self.flat = settings.observation == "flat"
+        self.observation_space: spaces.Space[Any] = (
+            flat_space(n, m) if self.flat else observation_space(n, m, num_actions)
+        )
+        self.state_space = state_space(n, m)
+        self.agents: list[str] = []
+        self.completed = 0
+        self._rng: np.random.Generator | None = None
+        self._mission: Mission | None = None
+
+    @property
+    def mission(self) -> Mission:
+        """The mission under way."""
+        if self._mission is None:
+            raise ActionError("there is no mission yet; call reset() first")
+        return self._mission
+
+    def reset(self, seed: int | None, options: dict[str, Any] | None) -> list[float]:
+        """Start the next episode and return each robot's reward for it, which is not 0 if it ends at once."""
+        scenario = _scenario_option(options)
+        if seed is not None:
+            self._rng = _seeded(seed)
+        elif self._rng is None:
+            self._rng = np.random.default_rng()
+        if scenario is None:
+            scenario = self.settings.draw(self._rng)
+        else:
+            self.settings.check_fits(scenario)
+        self._mission = mission = Mission(scenario, self.settings.mask_rule)
+        self._observer = Observer(scenario, self.max_tasks, len(self.names))
+        self._looked = False
+        n, m = scenario.num_tasks, scenario.num_robots
+        self.agents = self.names[:m]
+        self.completed = 0
+        self._decided = [0.0] * m
+        # Kept up to date by `take`: only the row of the robot and the column of the task change.
+        self._reasons = np.full((m, self.max_tasks), _NO_TASK, dtype=np.int8)
+        for robot in range(m):
+            self._reasons[robot, :n] = mission.reasons(robot)
+        return self._reward([])
+
+    def take(self, robot: int, task: int) -> None:
+        """Let a free robot take a task; `advance` moves the clock.
+
+        Raises:
+            ActionError: if it may not.
+        """
+        mission = self.mission
+        mission.take(robot, task)
+        self._decided[robot] = mission.time
+        self._reasons[:, task] = _TAKEN
+        self._reasons[robot, : mission.scenario.num_tasks] = mission.reasons(robot)
+
+    def advance(self) -> list[float]:
+        """Move the clock to the next robot to act and return each robot's reward."""
+        finished = self.mission.advance()
+        self._looked = False
+        for event in finished:
+            self.completed += event.completed
+        return self._reward(finished)
+
+    def infos(self) -> dict[str, Info]:
+        """Fresh infos of every agent of the scenario, see `mrta_v0`."""
+        reasons = self._reasons.copy()
+        masks = (reasons == _CHOOSABLE).view(np.int8)
+        time = self.mission.time
+        completed = self.completed
+        return {
+            name: {
+                "time": time,
+                "elapsed": time - decided,
+                "completed": completed,
+                "action_mask": mask,
+                "mask_reason": reason,
+            }
+            for name, decided, mask, reason in zip(self.agents, self._decided, masks, reasons, strict=True)
+        }
+
+    def mask(self, robot: int) -> npt.NDArray[np.int8]:
+        """(max_tasks,) what `robot` may choose when next free; all 0 for one the scenario does not have."""
+        if robot >= len(self.agents):
+            return np.zeros(self.max_tasks, dtype=np.int8)
+        return (self._reasons[robot] == _CHOOSABLE).view(np.int8)
+
+    def seen_by(self, robot: int) -> Any:
+        """What `robot` sees now: tables, or a vector in the flat form."""
+        self._look()
+        return self._observer.flat(robot) if self.flat else self._observer.tables(robot)
+
+    def state(self) -> FloatTable:
+        """(S,) the global state."""
+        self._look()
+        return self._observer.state()
+
+    def robot(self, agent: str) -> int:
+        """Robot index of an agent.
+
+        Raises:
+            ActionError: if there can be no agent of that name.
+        """
+        try:
+            return self.index[agent]
+        except (KeyError, TypeError):
+            raise ActionError(
+                f"there is no agent {agent!r}; they are {self.names[0]} to {self.names[-1]}"
+            ) from None
+
+    def as_action(self, agent: str, action: Any) -> int:
+        """An action as a Python integer within the action space.
+
+        Raises:
+            ActionError: if it is none.
+        """
+        last = int(self.action_spaces[agent].n) - 1
+        try:
+            number = operator.index(action)
+        except TypeError:
+            number = -1
+        if not 0 <= number <= last or isinstance(action, bool):
+            raise ActionError(f"{agent} sent action {action!r}; expected a whole number from 0 to {last}")
+        return number
+
+    def _look(self) -> None:
+        mission = self.mission
+        if not self._looked:
+            self._observer.look(mission)
+            self._looked = True
+
+    def _reward(self, finished: Sequence[Finished]) -> list[float]:
+        reward = self.settings.reward
+        assert callable(reward)  # a name was replaced at construction
+        rewards = [float(value) for value in reward(self.mission, finished)]
+        if len(rewards) != len(self.agents):
+            raise ConfigError(
+                f"the reward function gave {len(rewards)} numbers; expected {len(self.agents)}, one for each robot"
+            )
+        return rewards
+
+
+def _scenario_option(options: dict[str, Any] | None) -> Scenario | None:
+    """The scenario in the options of `reset`, if there is one."""
+    for option in options or {}:
+        # PettingZoo's contract tests pass {"options": 1} to every environment, so that this key has to be let by.
+        if option not in ("scenario", "options"):
+            raise ConfigError(f"reset has no option {option!r}; it has 'scenario'")
+    scenario = (options or {}).get("scenario")
+    if scenario is not None and not isinstance(scenario, Scenario):
+        raise ConfigError(f"reset's option 'scenario' is {scenario!r}; expected a mrta_zoo.Scenario")
+    return scenario
+
+
+def _seeded(seed: int) -> np.random.Generator:
+    try:
+        number = operator.index(seed)
+    except TypeError:
+        number = -1
+    if number < 0:
+        raise ConfigError(f"seed is {seed!r}; expected a whole number >= 0 or None")
+    return np.random.default_rng(number)

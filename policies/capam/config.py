@@ -1,0 +1,49 @@
+"""The shape of a network, as saved beside its weights."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from mrta_zoo.errors import ConfigError
+
+EncoderName = Literal["capsule", "attention"]
+
+
+@dataclass(frozen=True, slots=True)
+class NetworkConfig:
+    """Architecture of one policy network. The defaults are the paper's (§III and §IV-C).
+
+    Attributes:
+        encoder: "capsule" for CapAM, "attention" for the attention model (AM-RL).
+        embedding: h, length of embeddings and of the query; a multiple of `heads`.
+        heads: number of attention heads, in the decoder and in the attention encoder.
+        layers: L_e, number of encoder layers (1 in CapAM, 3 in AM).
+        hops: K, degree of the capsule filters.
+        moments: P, highest order of the capsules' moments.
+        decision_features: whether the decoder also sees decision-time features of each task, such as travel time
+            and slack (`mrta_zoo.policies.capam.decision_features`); ours, not the paper's.
+        tanh_clip: scores are clipped to ± this, as in Kool et al. (2019).
+    """
+
+    encoder: EncoderName = "capsule"
+    embedding: int = 128
+    heads: int = 8
+    layers: int = 1
+    hops: int = 2
+    moments: int = 3
+    decision_features: bool = False
+    tanh_clip: float = 10.0
+
+    def __post_init__(self) -> None:
+        if self.encoder not in ("capsule", "attention"):
+            raise ConfigError(f"encoder is {self.encoder!r}; expected 'capsule' or 'attention'")
+        for name in ("embedding", "heads", "layers", "moments"):
+            if getattr(self, name) < 1:
+                raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 1")
+        if self.hops < 0:
+            raise ConfigError(f"hops is {self.hops}; expected a whole number >= 0")
+        if self.embedding % self.heads:
+            raise ConfigError(f"embedding is {self.embedding}; expected a multiple of heads, {self.heads}")
+        if not self.tanh_clip > 0:
+            raise ConfigError(f"tanh_clip is {self.tanh_clip}; expected a number > 0")

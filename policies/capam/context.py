@@ -1,0 +1,52 @@
+"""The context: the state of the mission and the robots as one query vector (paper §III-B)."""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor, nn
+
+from mrta_zoo.policies.capam.inputs import Moments, Tasks
+
+
+class Context(nn.Module):
+    """The paper's five features: elapsed time, own capacity, own place, the peers' destinations and capacities.
+
+    The paper concatenates the peers, which fixes their number. Here each peer's destination and capacity pass one
+    shared layer, and mean and maximum over the peers are taken: any number of peers, in any order. The two scales
+    of the mission (`Tasks.horizon`, `Tasks.work_unit`) go along, since everything else is relative to them.
+
+    To add a context feature, widen `OWN` or `PEER` and add the column in `forward`.
+    """
+
+    OWN = 7
+    PEER = 5
+
+    def __init__(self, embedding: int) -> None:
+        super().__init__()
+        self.own = nn.Linear(self.OWN, embedding)
+        self.peer = nn.Linear(self.PEER, embedding)
+        self.query = nn.Linear(3 * embedding, embedding)
+
+    def forward(self, tasks: Tasks, moments: Moments) -> Tensor:
+        """The query of each decision: (S, G, h)."""
+        own_xy = moments.of_ego(moments.xy)
+        horizon = tasks.horizon[:, None].expand_as(moments.elapsed)
+        work_unit = tasks.work_unit[:, None].expand_as(moments.elapsed)
+        own = torch.stack(
+            (
+                moments.elapsed,
+                moments.elapsed * horizon / 4,  # 4: deadlines lie some 2 to 6 crossings ahead
+                horizon / 4,
+                work_unit,
+                moments.of_ego(moments.capacity),
+                *own_xy.unbind(-1),
+            ),
+            -1,
+        )
+        offset = moments.xy - own_xy[..., None, :]
+        peer = torch.cat((moments.xy, offset, moments.capacity[..., None]), -1)
+        peers = torch.relu(self.peer(peer)) * moments.peers[..., None]
+        count = moments.peers.sum(-1, keepdim=True).clamp(min=1)
+        pooled = torch.cat((torch.relu(self.own(own)), peers.sum(-2) / count, peers.amax(-2)), -1)
+        query: Tensor = self.query(pooled)
+        return query

@@ -1,0 +1,154 @@
+"""What the networks read: observations as tensors, from the AEC environment or from the batched simulator.
+
+Shapes: S scenarios, G decisions of each (several samples of a mission, or several moments), N tasks, M robots.
+Places are in map lengths L; times either as shares of the latest deadline T, or in *crossings*, the time L/V that
+the fastest robot takes to cross the map. Crossings make travel and deadlines comparable across scenarios.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.observation import Observation, Scales
+
+
+@dataclass(frozen=True, slots=True)
+class Tasks:
+    """What doesn't change during a mission; float32.
+
+    Attributes:
+        xy: (S, N, 2) places, in L.
+        deadline: (S, N) as a share of T.
+        workload: (S, N) as a share of the largest workload W.
+        exists: (S, N) bool, false for padding.
+        horizon: (S,) T in crossings.
+        work_unit: (S,) the time that the strongest robot takes for workload W, in crossings.
+    """
+
+    xy: Tensor
+    deadline: Tensor
+    workload: Tensor
+    exists: Tensor
+    horizon: Tensor
+    work_unit: Tensor
+
+    def select(self, index: Tensor) -> Tasks:
+        """The tasks of some of the scenarios."""
+        return Tasks(*(getattr(self, each.name)[index] for each in fields(self)))
+
+    @classmethod
+    def of_batch(cls, scenarios: ScenarioBatch) -> Tasks:
+        """The tasks of a batch of scenarios."""
+        s, scales = scenarios, _scales(scenarios)
+        return _tasks(
+            (s.task_xy / scales.length[:, None, None]).float(),
+            (s.deadline / scales.time[:, None]).float(),
+            (s.workload / scales.work[:, None]).float(),
+            s.task_exists,
+            scales.crossing_ratio.float(),
+            scales.work_ratio.float(),
+        )
+
+    @classmethod
+    def of_observations(cls, observations: Sequence[Observation], device: torch.device | str = "cpu") -> Tasks:
+        """The tasks that each of S observers sees."""
+        seen = [observation["observation"] for observation in observations]
+        tasks = torch.from_numpy(np.stack([each["tasks"] for each in seen])).to(device)
+        mission = torch.from_numpy(np.stack([each["mission"] for each in seen])).to(device)
+        exists = tasks[..., 4:8].any(-1)
+        return _tasks(tasks[..., :2], tasks[..., 2], tasks[..., 3], exists, mission[:, 1], mission[:, 2])
+
+
+@dataclass(frozen=True, slots=True)
+class Moments:
+    """What decisions depend on besides the tasks; float32 unless said otherwise.
+
+    Attributes:
+        xy: (S, G, M, 2) where each robot is, or is heading for, in L.
+        capacity: (S, G, M) as a share of the largest capacity.
+        speed: (S, G, M) as a share of the largest speed.
+        ready: (S, G, M) when each robot is free next, as a share of T, at most 1.
+        working: (S, G, M) bool, neither retired nor padding.
+        ego: (S, G) int64, the robot to act.
+        elapsed: (S, G) as a share of T, at most 1.
+        mask: (S, G, N) bool, what the robot to act may choose.
+    """
+
+    xy: Tensor
+    capacity: Tensor
+    speed: Tensor
+    ready: Tensor
+    working: Tensor
+    ego: Tensor
+    elapsed: Tensor
+    mask: Tensor
+
+    @classmethod
+    def of_batch(cls, mission: BatchMission, groups: int = 1) -> Moments:
+        """The present moment of B = S·G missions, of which each `groups` in a row share their scenario."""
+        s, scales = mission.scenarios, _scales(mission.scenarios)
+        flat = (
+            (mission.position / scales.length[:, None, None]).float(),
+            (s.capacity / scales.capacity[:, None]).float(),
+            (s.speed / scales.speed[:, None]).float(),
+            (mission.ready / scales.time[:, None]).clamp(max=1).float(),
+            ~mission.retired,
+            mission.actor.clamp(min=0),
+            (mission.time / scales.time).clamp(max=1).float(),
+            mission.mask(),
+        )
+        return cls(*(tensor.unflatten(0, (-1, groups)) for tensor in flat))
+
+    @classmethod
+    def of_observations(cls, observations: Sequence[Observation], device: torch.device | str = "cpu") -> Moments:
+        """The moments of S observers (G = 1)."""
+        seen = [observation["observation"] for observation in observations]
+        robots = torch.from_numpy(np.stack([each["robots"] for each in seen])).to(device)[:, None]
+        elapsed = torch.from_numpy(np.stack([each["mission"][:1] for each in seen])).to(device)
+        mask = torch.from_numpy(np.stack([o["action_mask"] for o in observations])).to(device)[:, None]
+        return cls(
+            xy=robots[..., :2],
+            capacity=robots[..., 2],
+            speed=robots[..., 3],
+            ready=robots[..., 4],
+            working=robots[..., 5] > 0,
+            ego=robots[..., 6].argmax(-1),
+            elapsed=elapsed,
+            mask=mask.bool(),
+        )
+
+    @property
+    def peers(self) -> Tensor:
+        """(S, G, M) bool, the working robots other than the one to act."""
+        index = torch.arange(self.working.shape[-1], device=self.working.device)
+        return self.working & (index != self.ego[..., None])
+
+    def of_ego(self, table: Tensor) -> Tensor:
+        """The row of a (S, G, M, …) table that belongs to the robot to act: (S, G, …)."""
+        index = self.ego.reshape(*self.ego.shape, *[1] * (table.dim() - 2))
+        return table.gather(2, index.expand(*self.ego.shape, 1, *table.shape[3:])).squeeze(2)
+
+
+def _scales(s: ScenarioBatch) -> Scales:
+    work = s.workload.amax(1)
+    return Scales(
+        length=s.map_size.amax(1),
+        time=s.deadline.masked_fill(~s.task_exists, 0).amax(1),
+        work=torch.where(work > 0, work, 1.0),
+        capacity=s.capacity.masked_fill(~s.robot_exists, 0).amax(1),
+        speed=s.speed.masked_fill(~s.robot_exists, 0).amax(1),
+    )
+
+
+def _tasks(
+    xy: Tensor, deadline: Tensor, workload: Tensor, exists: Tensor, crossing: Tensor, work: Tensor
+) -> Tasks:
+    crossing_share = crossing / (1 - crossing)
+    work_share = work / (1 - work)
+    return Tasks(xy, deadline, workload, exists, 1 / crossing_share, work_share / crossing_share)

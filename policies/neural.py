@@ -1,0 +1,188 @@
+"""A trained network as a policy in the AEC loop, and as a solver of whole missions."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, get_args
+
+import numpy as np
+import numpy.typing as npt
+import torch
+
+from mrta_zoo.batch import ScenarioBatch
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.observation import Observation
+from mrta_zoo.plan import Plan
+from mrta_zoo.policies.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.rollout import Rollout, roll_out
+from mrta_zoo.policies.sharing import Network
+from mrta_zoo.policies.weights import PolicyInfo, load_weights, pretrained_names, pretrained_path
+from mrta_zoo.rules import MaskRule
+from mrta_zoo.scenario import Scenario
+
+Decode = Literal["greedy", "sample"]
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """What a policy made of one observation."""
+
+    action: int
+    """The task taken."""
+    log_prob: float
+    """Log-probability of that action."""
+    probabilities: npt.NDArray[np.float32]
+    """(max_tasks,) probability of each task; 0 where masked."""
+
+
+class NeuralPolicy:
+    """Decides for every robot with one network, or with each robot's own. Implements `Policy` and `Solver`.
+
+    Args:
+        network: scores the tasks.
+        info: what belongs to the network.
+        name: what plans are signed with.
+        decode: how `act` chooses: the likeliest task ("greedy"), or drawn from the probabilities ("sample").
+        seed: of the draws.
+    """
+
+    def __init__(
+        self, network: Network, info: PolicyInfo, name: str = "capam", decode: Decode = "greedy", seed: int = 0
+    ) -> None:
+        _check_decode(decode)
+        self.network = network.eval()
+        self.info = info
+        self.name = name
+        self.decode = decode
+        self._generator = torch.Generator().manual_seed(seed)
+        self._encoded_for: bytes = b""
+        self._encoding = None
+
+    def act(self, observation: Observation, agent: str = "") -> int:
+        """The task to take. `agent` is not needed: the observation says whose it is."""
+        return self.decide(observation).action
+
+    @torch.no_grad()
+    def decide(self, observation: Observation) -> Decision:
+        """The task to take, with probabilities. The encoder runs only when the tasks differ from the last call's.
+
+        Raises:
+            ConfigError: if the observation leaves nothing to choose.
+        """
+        if not observation["action_mask"].any():
+            raise ConfigError("this robot has nothing to choose; a policy acts only when its robot's turn comes")
+        seen = observation["observation"]
+        unchanging = seen["tasks"][:, :4].tobytes() + seen["mission"][1:].tobytes()
+        if unchanging != self._encoded_for:
+            self._encoding = self.network.encode(Tasks.of_observations([observation]))
+            self._encoded_for = unchanging
+        log_probs = self.network(self._encoding, Moments.of_observations([observation]))[0, 0]
+        if self.decode == "greedy":
+            action = int(log_probs.argmax())
+        else:
+            action = int(torch.multinomial(log_probs.exp(), 1, generator=self._generator))
+        return Decision(action, float(log_probs[action]), log_probs.exp().numpy())
+
+    def solve(
+        self,
+        scenario: Scenario,
+        *,
+        decode: Decode = "greedy",
+        samples: int = 64,
+        budget: float | None = None,
+        mask_rule: MaskRule | None = None,
+        seed: int = 0,
+    ) -> Plan:
+        """A plan for the whole mission.
+
+        Args:
+            scenario: what to plan.
+            decode: "greedy", one pass; or "sample", the best of `samples` drawn missions and the greedy one.
+            samples: missions drawn in one go.
+            budget: with "sample", go on drawing for about this many seconds instead of stopping after one go.
+            mask_rule: what robots may choose; by default what the policy was trained under.
+            seed: of the draws.
+
+        Raises:
+            ConfigError: if an option is out of range.
+        """
+        _check_decode(decode)
+        if samples < 1:
+            raise ConfigError(f"samples is {samples}; expected a whole number >= 1")
+        if budget is not None and not budget > 0:
+            raise ConfigError(f"budget is {budget}; expected a number of seconds > 0")
+        rule: MaskRule = mask_rule or self.info.mask_rule
+        batch = ScenarioBatch.of([scenario])
+        deadline = time.perf_counter() + (budget or 0.0)
+        best = _Best()
+        best.offer(roll_out(self.network, batch, mask_rule=rule, keep_plans=True))
+        generator = torch.Generator().manual_seed(seed)
+        while decode == "sample":
+            best.offer(
+                roll_out(
+                    self.network, batch, samples=samples, generator=generator, mask_rule=rule, keep_plans=True
+                )
+            )
+            if budget is None or time.perf_counter() >= deadline:
+                break
+        return Plan(best.plan.routes, scenario.name, self.name)
+
+    def solve_batch(
+        self, scenarios: Sequence[Scenario], mask_rule: MaskRule | None = None
+    ) -> list[Plan]:
+        """Greedy plans for many missions at once, faster than one by one."""
+        rule: MaskRule = mask_rule or self.info.mask_rule
+        rollout = roll_out(self.network, ScenarioBatch.of(scenarios), mask_rule=rule, keep_plans=True)
+        return [
+            Plan(plan.routes, scenario.name, self.name)
+            for plan, scenario in zip(rollout.plans, scenarios, strict=True)
+        ]
+
+
+class _Best:
+    """The best plan so far: most tasks completed, then least cost, then first found."""
+
+    def __init__(self) -> None:
+        self.plan = Plan(())
+        self._key = (-1, -float("inf"))
+
+    def offer(self, rollout: Rollout) -> None:
+        keys = zip(rollout.completed.tolist(), (-rollout.cost).tolist(), strict=True)
+        for key, plan in zip(keys, rollout.plans, strict=True):
+            if key > self._key:
+                self._key, self.plan = key, plan
+
+
+def load_policy(name_or_path: str | Path, decode: Decode = "greedy", seed: int = 0) -> NeuralPolicy:
+    """A policy that ships with the package, by name, or one from a file or a training run's folder.
+
+    Args:
+        name_or_path: such as "capam", "runs/mine" or "runs/mine/policy.safetensors".
+        decode: how `NeuralPolicy.act` chooses.
+        seed: of its draws.
+
+    Raises:
+        ConfigError: if there is no such policy, or its files are damaged.
+    """
+    path = Path(name_or_path)
+    if str(name_or_path) in pretrained_names():
+        path, name = pretrained_path(str(name_or_path)), str(name_or_path)
+    elif path.is_dir():
+        path, name = path / "policy.safetensors", path.name
+    elif path.suffix == ".safetensors":
+        name = path.stem
+    else:
+        raise ConfigError(
+            f"there is no policy {str(name_or_path)!r}; expected one of {', '.join(pretrained_names())}, "
+            "a .safetensors file, or the folder of a training run"
+        )
+    network, info = load_weights(path)
+    return NeuralPolicy(network, info, name, decode, seed)
+
+
+def _check_decode(decode: str) -> None:
+    if decode not in get_args(Decode):
+        raise ConfigError(f"decode is {decode!r}; expected one of {', '.join(get_args(Decode))}")

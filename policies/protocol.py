@@ -1,0 +1,27 @@
+"""What everything that chooses tasks has in common."""
+
+from __future__ import annotations
+
+from typing import Protocol, runtime_checkable
+
+from mrta_zoo.observation import Observation
+from mrta_zoo.plan import Plan
+from mrta_zoo.scenario import Scenario
+
+
+@runtime_checkable
+class Policy(Protocol):
+    """Chooses for one robot at a time, from what that robot sees. Sits in the AEC loop."""
+
+    def act(self, observation: Observation, agent: str) -> int:
+        """The task that `agent` takes, given its observation (`mrta_zoo.observation`). Must be legal."""
+        ...
+
+
+@runtime_checkable
+class Solver(Protocol):
+    """Plans a whole mission at once."""
+
+    def solve(self, scenario: Scenario) -> Plan:
+        """A plan for `scenario`."""
+        ...

@@ -1,0 +1,200 @@
+"""Every method that can plan a mission, by name. To add one, give it an entry in `METHODS`.
+
+Importing this imports no torch; learned methods load it when they are made.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, get_args
+
+from mrta_zoo.errors import ConfigError, MissingExtraError
+from mrta_zoo.plan import Plan
+from mrta_zoo.policies.aec_loop import run_in_environment
+from mrta_zoo.policies.heuristics import EarliestDeadlinePolicy, NearestPolicy, RandomPolicy
+from mrta_zoo.policies.protocol import Policy, Solver
+from mrta_zoo.rules import MaskRule, check_mask_rule
+from mrta_zoo.scenario import Scenario
+
+if TYPE_CHECKING:
+    from mrta_zoo.policies.neural import NeuralPolicy
+
+Decode = Literal["greedy", "sample"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SolverOptions:
+    """What any method may be told; each uses what it can.
+
+    Attributes:
+        seed: of all draws, >= 0. Every scenario starts from it, so that a case has the same plan in any company.
+        decode: how learned methods choose: "greedy", the likeliest task each time; "sample", the best of several drawn
+            missions and the greedy one. None is "sample" if there is a budget, else "greedy".
+        samples: missions that "sample" draws in one go, >= 1.
+        budget: seconds a scenario that methods which search may take, > 0; None leaves it to the method.
+        mask_rule: what robots may choose, see `rules.MaskRule`.
+
+    Raises:
+        ConfigError: if a value is out of range.
+    """
+
+    seed: int = 0
+    decode: Decode | None = None
+    samples: int = 64
+    budget: float | None = None
+    mask_rule: MaskRule = "feasible"
+
+    def __post_init__(self) -> None:
+        if self.seed < 0:
+            raise ConfigError(f"seed is {self.seed}; expected a whole number >= 0")
+        if self.decode is None:
+            object.__setattr__(self, "decode", "greedy" if self.budget is None else "sample")
+        if self.decode not in get_args(Decode):
+            raise ConfigError(f"decode is {self.decode!r}; expected one of {', '.join(get_args(Decode))}")
+        if self.samples < 1:
+            raise ConfigError(f"samples is {self.samples}; expected a whole number >= 1")
+        if self.budget is not None and not 0 < self.budget < math.inf:
+            raise ConfigError(f"budget is {self.budget:g}; expected a number of seconds > 0")
+        if self.mask_rule not in get_args(MaskRule):
+            raise check_mask_rule(self.mask_rule)
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """A way to plan.
+
+    Attributes:
+        summary: what it does, in a few words.
+        make: the solver, given the options.
+    """
+
+    summary: str
+    make: Callable[[SolverOptions], Solver]
+
+
+class PolicySolver:
+    """Plans by running a fresh policy through the AEC environment.
+
+    Args:
+        make_policy: gives the policy for one mission.
+        mask_rule: what robots may choose.
+        method: what plans are signed with.
+    """
+
+    def __init__(self, make_policy: Callable[[], Policy], mask_rule: MaskRule, method: str) -> None:
+        self._make_policy, self._mask_rule, self._method = make_policy, mask_rule, method
+
+    def solve(self, scenario: Scenario) -> Plan:
+        """A plan for `scenario`."""
+        return run_in_environment(self._make_policy(), scenario, self._mask_rule, self._method)
+
+
+class LearnedSolver:
+    """Plans with a trained policy.
+
+    Args:
+        policy: the policy.
+        options: how to use it.
+    """
+
+    def __init__(self, policy: NeuralPolicy, options: SolverOptions) -> None:
+        self.policy, self._options = policy, options
+
+    def solve(self, scenario: Scenario) -> Plan:
+        """A plan for `scenario`."""
+        options = self._options
+        return self.policy.solve(
+            scenario,
+            decode=options.decode or "greedy",
+            samples=options.samples,
+            budget=options.budget,
+            mask_rule=options.mask_rule,
+            seed=options.seed,
+        )
+
+    def warm_up(self, scenario: Scenario) -> None:
+        """Plan once without a search: the first pass of a network is slower than those that follow."""
+        self.policy.solve(scenario, mask_rule=self._options.mask_rule)
+
+
+METHODS: dict[str, Method] = {
+    "random": Method(
+        "any feasible task, drawn evenly",
+        lambda options: PolicySolver(lambda: RandomPolicy(options.seed), options.mask_rule, "random"),
+    ),
+    "nearest": Method(
+        "the nearest feasible task",
+        lambda options: PolicySolver(NearestPolicy, options.mask_rule, "nearest"),
+    ),
+    "edf": Method(
+        "the feasible task with the earliest deadline",
+        lambda options: PolicySolver(EarliestDeadlinePolicy, options.mask_rule, "edf"),
+    ),
+}
+"""Methods that need no training. The policies that ship with the package are methods, too: see `method_names`."""
+
+
+def method_names() -> list[str]:
+    """What `make_solver` knows by name: `METHODS`, then the trained policies that ship with the package."""
+    folder = resources.files("mrta_zoo.policies.pretrained")
+    shipped = sorted(Path(file.name).stem for file in folder.iterdir() if file.name.endswith(".safetensors"))
+    return [*METHODS, *shipped]
+
+
+def make_solver(
+    name: str,
+    *,
+    seed: int = 0,
+    decode: Decode | None = None,
+    samples: int = 64,
+    budget: float | None = None,
+    mask_rule: MaskRule = "feasible",
+) -> Solver:
+    """The method of that name, ready to plan.
+
+    Args:
+        name: one of `method_names()`, a trained policy's ``.safetensors`` file, or the folder of a training run.
+        seed: see `SolverOptions`, as for all that follow.
+        decode: how learned methods choose.
+        samples: missions that sampling draws in one go.
+        budget: seconds a scenario for methods that search.
+        mask_rule: what robots may choose.
+
+    Raises:
+        ConfigError: if there is no such method, or an option is out of range.
+        MissingExtraError: if a learned method is asked for and torch is not installed.
+    """
+    options = SolverOptions(seed=seed, decode=decode, samples=samples, budget=budget, mask_rule=mask_rule)
+    if name in METHODS:
+        return METHODS[name].make(options)
+    names = method_names()
+    if name not in names and not name.endswith(".safetensors") and not (name and Path(name).is_dir()):
+        raise ConfigError(
+            f"there is no method {name!r}; expected one of {', '.join(names)}, a .safetensors file, or the folder of a "
+            "training run"
+        )
+    return LearnedSolver(load_learned(name), options)
+
+
+def load_learned(name: str) -> NeuralPolicy:
+    """A trained policy, by name or path.
+
+    Raises:
+        ConfigError: if there is none, or its files are damaged.
+        MissingExtraError: if torch is not installed.
+    """
+    try:
+        import safetensors
+        import torch  # noqa: F401  (heavy, and only learned methods need it)
+    except ImportError:
+        raise MissingExtraError(
+            f"method {name!r} is a trained network and needs torch and safetensors, which are not installed; install "
+            'them with: pip install "mrta_zoo[torch]"'
+        ) from None
+    from mrta_zoo.policies.neural import load_policy
+
+    return load_policy(name)

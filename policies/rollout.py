@@ -1,0 +1,160 @@
+"""Running a network through missions in the batched simulator, greedily or by sampling."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields
+
+import torch
+from torch import Tensor
+
+from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.plan import Plan
+from mrta_zoo.policies.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.sharing import Network
+from mrta_zoo.rules import MaskRule
+
+SEGMENT = 12
+"""Decisions between two looks at which missions are over; those are dropped, so that no work is done for them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """Consecutive decisions of the missions that were under way: Q = G · (number of decisions).
+
+    Attributes:
+        scenarios: (S',) int64 which scenarios they belong to.
+        moments: when they were taken, (S', Q, …).
+        features: the decision-time features then, (S', Q, N, F), or None.
+        actions: (S', Q) int64 the tasks chosen.
+        live: (S', Q) bool, false where the mission was already over.
+        sample: (Q,) int64 which of the G samples each belongs to.
+    """
+
+    scenarios: Tensor
+    moments: Moments
+    features: Tensor | None
+    actions: Tensor
+    live: Tensor
+    sample: Tensor
+
+
+@dataclass(frozen=True, slots=True)
+class Rollout:
+    """What came of B = S · G missions; row k·G + g is sample g of scenario k.
+
+    Attributes:
+        cost: (B,) float64, the objective, Eq. 1 of the paper.
+        completed: (B,) int64 completed tasks.
+        log_prob: (B,) float32, log-probability of all decisions together.
+        plans: B plans, if asked for.
+        segments: the decisions, if asked for.
+    """
+
+    cost: Tensor
+    completed: Tensor
+    log_prob: Tensor
+    plans: list[Plan] = field(default_factory=list)
+    segments: list[Segment] = field(default_factory=list)
+
+
+@torch.no_grad()
+def roll_out(
+    network: Network,
+    scenarios: ScenarioBatch,
+    *,
+    samples: int = 1,
+    generator: torch.Generator | None = None,
+    mask_rule: MaskRule = "feasible",
+    keep_plans: bool = False,
+    keep_segments: bool = False,
+) -> Rollout:
+    """Let `network` decide for all robots of all missions.
+
+    Args:
+        network: decides for each robot; its encoder runs once a scenario.
+        scenarios: S scenarios.
+        samples: G, how many missions to run of each.
+        generator: draws the decisions from the network's probabilities; None takes the likeliest (greedy).
+        mask_rule: what robots may choose.
+        keep_plans: whether to return the plans.
+        keep_segments: whether to return every decision, for learning.
+    """
+    tasks = Tasks.of_batch(scenarios)
+    encoding = network.encode(tasks)
+    mission = BatchMission(scenarios.repeat(samples), mask_rule)
+    total, device = len(scenarios) * samples, scenarios.device
+    out = Rollout(
+        cost=torch.zeros(total, dtype=torch.float64, device=device),
+        completed=torch.zeros(total, dtype=torch.int64, device=device),
+        log_prob=torch.zeros(total, device=device),
+    )
+    plans: list[Plan | None] = [None] * total
+    under_way = torch.arange(len(scenarios), device=device)
+    while True:
+        live_scenarios = (~mission.done).unflatten(0, (-1, samples)).any(1)
+        if not live_scenarios.all():
+            rows = _rows(under_way, samples)
+            out.cost[rows] = mission.cost()
+            out.completed[rows] = mission.completed()
+            if keep_plans:
+                for row, plan in zip(rows.tolist(), mission.plans(), strict=True):
+                    plans[row] = plan
+            if not live_scenarios.any():
+                break
+            keep = live_scenarios.nonzero().squeeze(1)
+            under_way = under_way[keep]
+            mission = mission.select(_rows(keep, samples))
+            encoding = encoding.select(keep)
+        out.log_prob[_rows(under_way, samples)] += _run_segment(
+            network, encoding, mission, samples, generator, under_way, out.segments if keep_segments else None
+        )
+    out.plans.extend(plan for plan in plans if plan is not None)
+    return out
+
+
+def _run_segment(
+    network: Network,
+    encoding: object,
+    mission: BatchMission,
+    samples: int,
+    generator: torch.Generator | None,
+    under_way: Tensor,
+    segments: list[Segment] | None,
+) -> Tensor:
+    taken: list[tuple[Moments, Tensor | None, Tensor, Tensor]] = []
+    log_prob = torch.zeros(len(mission.actor), device=mission.actor.device)
+    for _ in range(SEGMENT):
+        moments = Moments.of_batch(mission, samples)
+        features = network.features(encoding, moments)  # type: ignore[arg-type]
+        log_probs = network(encoding, moments, features).flatten(0, 1)
+        if generator is None:
+            action = log_probs.argmax(-1)
+        else:
+            action = torch.multinomial(log_probs.exp(), 1, generator=generator).squeeze(1)
+        live = ~mission.done
+        log_prob += torch.where(live, log_probs.gather(1, action[:, None]).squeeze(1), 0.0)
+        if segments is not None:
+            shape = (-1, samples)
+            taken.append((moments, features, action.unflatten(0, shape), live.unflatten(0, shape)))
+        mission.step(action)
+    if segments is not None:
+        moments = Moments(
+            *(torch.cat([getattr(each[0], f.name) for each in taken], 1) for f in fields(Moments))
+        )
+        features = None if taken[0][1] is None else torch.cat([each[1] for each in taken], 1)  # type: ignore[misc]
+        segments.append(
+            Segment(
+                scenarios=under_way,
+                moments=moments,
+                features=features,
+                actions=torch.cat([each[2] for each in taken], 1),
+                live=torch.cat([each[3] for each in taken], 1),
+                sample=torch.arange(samples, device=under_way.device).repeat(SEGMENT),
+            )
+        )
+    return log_prob
+
+
+def _rows(scenarios: Tensor, samples: int) -> Tensor:
+    """The rows that the samples of some scenarios occupy."""
+    return (scenarios[:, None] * samples + torch.arange(samples, device=scenarios.device)).flatten()

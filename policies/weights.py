@@ -1,0 +1,168 @@
+"""Trained policies on disk: `NAME.safetensors` holds the weights, `NAME.json` beside it says what they belong to.
+
+Nothing is ever unpickled, so a policy from a stranger can be loaded safely.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass, field, fields, is_dataclass
+from importlib import resources
+from pathlib import Path
+from typing import Any, Literal, TypeVar, get_type_hints
+
+import msgspec
+import torch
+from safetensors import SafetensorError
+from safetensors.torch import load_file, save_file
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.policies.capam.config import NetworkConfig
+from mrta_zoo.policies.sharing import Network, Sharing, build_network
+from mrta_zoo.rules import MaskRule
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PolicyInfo:
+    """What belongs to a set of weights.
+
+    Attributes:
+        network: architecture.
+        sharing: "shared" or "independent".
+        robots: number of networks, if independent.
+        mask_rule: the mask rule it was trained under.
+        trained: how it was trained, for people to read.
+        format: always "mrta_zoo.policy".
+        version: of the format.
+    """
+
+    network: NetworkConfig
+    sharing: Sharing = "shared"
+    robots: int = 1
+    mask_rule: MaskRule = "feasible"
+    trained: dict[str, Any] = field(default_factory=dict)
+    format: Literal["mrta_zoo.policy"] = "mrta_zoo.policy"
+    version: Literal[1] = 1
+
+
+def save_policy(path: Path, network: Network, info: PolicyInfo) -> None:
+    """Write `path` (….safetensors) and the JSON beside it, each atomically."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    write_tensors(path, dict(network.state_dict()))
+    write_json(path.with_suffix(".json"), info)
+
+
+def load_weights(path: Path) -> tuple[Network, PolicyInfo]:
+    """Read a policy written by `save_policy`.
+
+    Raises:
+        ConfigError: if a file is missing or malformed, or the weights don't fit the architecture.
+    """
+    path = Path(path)
+    info = read_json(path.with_suffix(".json"), PolicyInfo)
+    tensors = read_tensors(path)
+    network = build_network(info.network, info.sharing, info.robots, seed=0)
+    load_state(network, tensors, path)
+    return network.eval(), info
+
+
+def pretrained_names() -> list[str]:
+    """Names of the policies that ship with the package."""
+    folder = resources.files("mrta_zoo.policies.pretrained")
+    return sorted(each.name[: -len(".safetensors")] for each in folder.iterdir() if each.name.endswith(".safetensors"))
+
+
+def pretrained_path(name: str) -> Path:
+    """The file of a policy that ships with the package.
+
+    Raises:
+        ConfigError: if there is none of that name.
+    """
+    if name not in pretrained_names():
+        raise ConfigError(
+            f"no policy {name!r} ships with the package; there are {', '.join(pretrained_names()) or 'none'}"
+        )
+    return Path(str(resources.files("mrta_zoo.policies.pretrained") / f"{name}.safetensors"))
+
+
+def write_tensors(path: Path, tensors: dict[str, torch.Tensor]) -> None:
+    """Write tensors to a safetensors file; readers see the old file or the new one, never half of it."""
+    partial = path.with_name(path.name + ".partial")
+    save_file({name: tensor.detach().cpu().contiguous() for name, tensor in tensors.items()}, partial)
+    os.replace(partial, path)
+
+
+def read_tensors(path: Path) -> dict[str, torch.Tensor]:
+    """Read a safetensors file.
+
+    Raises:
+        ConfigError: if it is missing or malformed.
+    """
+    try:
+        return dict(load_file(path))
+    except FileNotFoundError:
+        raise ConfigError(f"{path}: no such file; expected weights in a .safetensors file") from None
+    except (SafetensorError, OSError, ValueError) as error:
+        raise ConfigError(f"{path}: not a readable safetensors file ({error})") from None
+
+
+def write_json(path: Path, value: Any) -> None:
+    """Write a dataclass as indented JSON; readers see the old file or the new one, never half of it."""
+    partial = path.with_name(path.name + ".partial")
+    partial.write_text(json.dumps(msgspec.to_builtins(value), indent=2) + "\n", encoding="utf-8")
+    os.replace(partial, path)
+
+
+def read_json(path: Path, of: type[T]) -> T:
+    """Read a dataclass back from JSON, strictly: unknown fields are errors, too.
+
+    Raises:
+        ConfigError: if the file is missing or malformed.
+    """
+    try:
+        value = msgspec.json.decode(path.read_bytes())
+        if isinstance(value, dict):
+            _refuse_unknown(value, of, path)
+        return msgspec.convert(value, of)
+    except FileNotFoundError:
+        raise ConfigError(f"{path}: no such file; expected the JSON that belongs to the weights") from None
+    except (msgspec.MsgspecError, OSError, UnicodeDecodeError) as error:
+        raise ConfigError(f"{path}: {error}") from None
+
+
+def _refuse_unknown(value: dict[str, Any], of: type, path: Path) -> None:
+    """msgspec ignores what a dataclass has no field for; a misspelt field must not pass silently."""
+    hints = get_type_hints(of)
+    known = {each.name for each in fields(of)}
+    for name, inner in value.items():
+        if name not in known:
+            raise ConfigError(f"{path}: unknown field {name!r}; expected some of {', '.join(sorted(known))}")
+        if is_dataclass(hints[name]) and isinstance(inner, dict):
+            _refuse_unknown(inner, hints[name], path)
+
+
+def load_state(network: Network, tensors: dict[str, torch.Tensor], path: Path) -> None:
+    """Put tensors into a network, all of them or none.
+
+    Raises:
+        ConfigError: if a tensor is missing, left over, of another shape, or not finite.
+    """
+    expected = network.state_dict()
+    for name, tensor in expected.items():
+        if name not in tensors:
+            raise ConfigError(f"{path}: tensor {name!r} is missing; the weights belong to another architecture")
+        if tensors[name].shape != tensor.shape:
+            raise ConfigError(
+                f"{path}: tensor {name!r} has shape {tuple(tensors[name].shape)}; "
+                f"the architecture needs {tuple(tensor.shape)}"
+            )
+        if not torch.isfinite(tensors[name]).all():
+            raise ConfigError(f"{path}: tensor {name!r} holds numbers that are not finite")
+    for name in tensors:
+        if name not in expected:
+            raise ConfigError(f"{path}: tensor {name!r} has no place in the architecture")
+    network.load_state_dict(tensors)

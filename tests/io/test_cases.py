@@ -1,0 +1,115 @@
+"""Folders of cases and their reference tables."""
+
+import pickle
+from pathlib import Path
+
+import pytest
+
+from mrta_zoo import Scenario
+from mrta_zoo.errors import ScenarioError
+from mrta_zoo.io import read_cases, write_scenario
+
+
+def scenario(name: str, tasks: int = 3) -> Scenario:
+    return Scenario([[1, 1]] * tasks, [5] * tasks, [1] * tasks, [[0, 0]], [1], name=name)  # type: ignore[arg-type]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name in ("c10", "c9", "c1"):
+        write_scenario(scenario(name), tmp_path / f"{name}.json")
+    write_scenario(scenario("c2"), tmp_path / "c2.csv")
+    (tmp_path / "notes.txt").write_text("not a case")
+    return tmp_path
+
+
+def test_natural_order_without_reference(folder: Path) -> None:
+    cases = read_cases(folder)
+    assert [case.name for case in cases] == ["c1", "c2", "c9", "c10"]
+    assert [case.scenario.name for case in cases] == ["c1", "c2", "c9", "c10"]
+    assert all(case.best_known is None and case.reference == {} for case in cases)
+
+
+def test_reference(folder: Path) -> None:
+    (folder / "reference.csv").write_text(
+        "case,tasks,robots,nearest,pyvrp\nc1,3,1,2,3\nelsewhere,100,7,50,60\nc9,3,1,0,\nc10,3,1,,\n"
+    )
+    cases = {case.name: case for case in read_cases(folder)}
+    assert cases["c1"].reference == {"nearest": 2, "pyvrp": 3}
+    assert cases["c1"].best_known == 3
+    assert cases["c9"].reference == {"nearest": 0}
+    assert cases["c9"].best_known == 0
+    assert cases["c10"].best_known is None
+    assert cases["c2"].best_known is None
+    assert pickle.loads(pickle.dumps(cases)) == cases
+    assert len({hash(case) for case in cases.values()}) == 4
+
+
+def test_taptc_folder(tmp_path: Path) -> None:
+    for group in ("group1", "group2"):
+        for robots in (10, 2):
+            path = tmp_path / group / f"r{group[-1]}1a{robots}i00.txt"
+            path.parent.mkdir(exist_ok=True)
+            path.write_text("1 100 100\n0 1 1 20 50")
+            (tmp_path / "agent").mkdir(exist_ok=True)
+            agents = "".join(f"{index} 5 5 1\n" for index in range(robots))
+            (tmp_path / "agent" / f"a{robots}i00.txt").write_text(f"{robots} 100 100\n{agents}")
+    cases = read_cases(tmp_path)
+    assert [case.name for case in cases] == ["r11a2i00", "r11a10i00", "r21a2i00", "r21a10i00"]
+    assert [case.scenario.num_robots for case in cases] == [2, 10, 2, 10]
+
+
+@pytest.mark.parametrize(
+    ("reference", "message"),
+    [
+        ("", "reference.csv is empty"),
+        (
+            "case,tasks,robots\nc1,3,1\n",
+            "header is 'case,tasks,robots'; expected case,tasks,robots and a column",
+        ),
+        ("name,tasks,robots,m\nc1,3,1,2\n", "header is 'name,tasks,robots,m'; expected case"),
+        ("case,tasks,robots,m,m\nc1,3,1,2,2\n", "method 'm' is empty or appears twice; expected"),
+        ("case,tasks,robots,\nc1,3,1,2\n", "method '' is empty"),
+        ("case,tasks,robots,m\nc1,3,1\n", "line 2: 'c1,3,1' has 3 cells; expected 4"),
+        ("case,tasks,robots,m\nc1,3,1,x\n", "line 2: m is 'x'; expected a whole number"),
+        ("case,tasks,robots,m\nc1,3,1,2.0\n", "line 2: m is '2.0'; expected a whole number"),
+        ("case,tasks,robots,m\nc1,3,1,-2\n", "line 2: m is '-2'; expected a whole number"),
+        ("case,tasks,robots,m\nc1,3,1,4\n", "line 2: m is 4; expected at most 3"),
+        ("case,tasks,robots,m\nc1,4,1,2\n", "line 2: tasks is 4; expected 3 as in the case c1"),
+        ("case,tasks,robots,m\nc1,3,2,2\n", "line 2: robots is 2; expected 1 as in the case c1"),
+        ("case,tasks,robots,m\nc1,3,1,2\nc1,3,1,2\n", "line 3: case 'c1' appears twice; expected"),
+    ],
+)
+def test_malformed_reference(folder: Path, reference: str, message: str) -> None:
+    (folder / "reference.csv").write_text(reference)
+    with pytest.raises(ScenarioError) as caught:
+        read_cases(folder)
+    assert "reference.csv" in str(caught.value)
+    assert message in str(caught.value)
+
+
+def test_no_such_folder(tmp_path: Path) -> None:
+    with pytest.raises(ScenarioError, match="nowhere does not exist; expected a folder"):
+        read_cases(tmp_path / "nowhere")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ScenarioError, match="file is not a folder; expected a folder"):
+        read_cases(tmp_path / "file")
+
+
+def test_no_cases(tmp_path: Path) -> None:
+    with pytest.raises(ScenarioError, match="holds no cases; expected"):
+        read_cases(tmp_path)
+
+
+def test_two_cases_of_one_name(folder: Path) -> None:
+    write_scenario(scenario("c1"), folder / "other.json")
+    with pytest.raises(
+        ScenarioError, match=r"other\.json: the case is called 'c1', as in .*c1\.json; expected"
+    ):
+        read_cases(folder)
+
+
+def test_malformed_case_is_named(folder: Path) -> None:
+    (folder / "c5.json").write_text("{")
+    with pytest.raises(ScenarioError, match=r"c5\.json, line 1"):
+        read_cases(folder)

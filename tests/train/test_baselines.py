@@ -1,0 +1,64 @@
+"""Baselines, by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import torch
+
+from mrta_zoo.batch import ScenarioBatch
+from mrta_zoo.generators import UniformGenerator
+from mrta_zoo.policies.capam.config import NetworkConfig
+from mrta_zoo.policies.rollout import roll_out
+from mrta_zoo.policies.sharing import build_network
+from mrta_zoo.train.baselines import RolloutBaseline, SamplesBaseline
+from mrta_zoo.train.objective import missed_share
+
+
+def scenarios(count: int) -> ScenarioBatch:
+    rng = np.random.default_rng(0)
+    generator = UniformGenerator(tasks=8, robots=2, deadline=(30, 120))  # type: ignore[arg-type]
+    return ScenarioBatch.of([generator(rng) for _ in range(count)])
+
+
+def test_samples_baseline_compares_with_the_other_samples() -> None:
+    # Others of the first: (2 + 6)/2 = 4, so 1 − 4 = −3; second: 2 − (1 + 6)/2 = −1.5; third: 6 − (1 + 2)/2 = 4.5.
+    loss = torch.tensor([[1.0, 2.0, 6.0]])
+    torch.testing.assert_close(SamplesBaseline().advantage(scenarios(1), loss), torch.tensor([[-3.0, -1.5, 4.5]]))
+
+
+def test_rollout_baseline_compares_with_its_own_greedy_missions() -> None:
+    network, batch = build_network(NetworkConfig(embedding=32), "shared", 2, seed=0), scenarios(3)
+    baseline = RolloutBaseline(network, missed_share, "feasible", 0.05)
+    greedy = missed_share(roll_out(network, batch), batch)
+    loss = torch.rand(3, 2, dtype=torch.float64)
+    torch.testing.assert_close(baseline.advantage(batch, loss), loss - greedy[:, None])
+
+
+@pytest.mark.parametrize(
+    ("gain", "replaced"),
+    [
+        (0.1, True),  # better everywhere by about as much: significant
+        (0.0, False),  # equal
+        (-0.1, False),  # worse
+    ],
+)
+def test_rollout_baseline_is_replaced_only_by_a_significantly_better_policy(gain: float, replaced: bool) -> None:
+    batch = scenarios(16)
+    old, new = (build_network(NetworkConfig(embedding=32), "shared", 2, seed=seed) for seed in (0, 1))
+    baseline = RolloutBaseline(old, missed_share, "feasible", 0.05)
+    noise = torch.linspace(-0.01, 0.01, 16, dtype=torch.float64)
+    loss = missed_share(roll_out(old, batch), batch) - gain + (noise if gain else 0)
+    assert baseline.end_epoch(new, batch, loss) is replaced
+    wanted = new if replaced else old
+    for name, value in baseline.network.state_dict().items():
+        assert torch.equal(value, wanted.state_dict()[name])
+
+
+def test_rollout_baseline_is_not_replaced_by_luck() -> None:
+    # One of 16 scenarios much better, the others a little worse: the mean is better, p is about 0.2.
+    batch = scenarios(16)
+    network = build_network(NetworkConfig(embedding=32), "shared", 2, seed=0)
+    loss = missed_share(roll_out(network, batch), batch) + 0.001
+    loss[0] -= 0.5
+    assert not RolloutBaseline(network, missed_share, "feasible", 0.05).end_epoch(network, batch, loss)

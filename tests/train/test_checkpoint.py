@@ -1,0 +1,170 @@
+"""Runs on disk: killed and resumed to the same bits; damage is told, not suffered."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import torch
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.policies.capam.config import NetworkConfig
+from mrta_zoo.policies.neural import load_policy
+from mrta_zoo.train import checkpoint
+from mrta_zoo.train.cli import train_command
+from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.reinforce import Reinforce, Validation
+
+TINY = TrainConfig(
+    network=NetworkConfig(embedding=32, heads=4), tasks=10, min_robots=1, max_robots=3, scenarios=4, samples=4,
+    updates=6, epoch=2, validation_scenarios=8,
+)  # fmt: skip
+
+
+def weights(run: Reinforce) -> dict[str, torch.Tensor]:
+    return dict(run.network.state_dict())
+
+
+@pytest.mark.parametrize("baseline", ["samples", "rollout"])
+@pytest.mark.parametrize("sharing", ["shared", "independent"])
+def test_resumed_run_ends_in_the_same_bits(tmp_path: Path, baseline: str, sharing: str) -> None:
+    config = replace(TINY, baseline=baseline, sharing=sharing, significance=0.9)
+    straight = Reinforce(config)
+    list(straight.run())
+
+    broken = checkpoint.start(tmp_path / "run", config)
+    for event in broken.run():
+        if isinstance(event, Validation):
+            checkpoint.save(tmp_path / "run", broken, 1.0)
+            if event.update == 2:
+                break
+    broken.step()  # lost work, after the last checkpoint
+    resumed, seconds = checkpoint.resume(tmp_path / "run")
+    assert (resumed.update, seconds) == (2, 1.0)
+    for event in resumed.run():
+        if isinstance(event, Validation):
+            checkpoint.save(tmp_path / "run", resumed, 2.0)
+    assert resumed.history == straight.history
+    for name, value in weights(straight).items():
+        assert torch.equal(value, weights(resumed)[name])
+    names = sorted(each.name for each in (tmp_path / "run" / "checkpoints").iterdir())
+    assert names == ["00000002", "00000004", "00000006"]
+
+
+def test_killed_run_resumes_to_the_same_bits(tmp_path: Path) -> None:
+    arguments = ("--preset=smoke --tasks 10 --updates 12 --epoch 1 --scenarios 4 --validation-scenarios 8 "
+                 "--embedding 32 --heads 4 --threads 1").split()  # fmt: skip
+    train_command([*arguments, "--out", str(tmp_path / "straight")])
+
+    killed = tmp_path / "killed"
+    command = [sys.executable, "-m", "mrta_zoo.train.cli", *arguments, "--out", str(killed)]
+    process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    until = time.monotonic() + 60
+    while not (killed / "checkpoints" / "00000003").exists() and time.monotonic() < until:
+        time.sleep(0.01)
+    os.kill(process.pid, signal.SIGKILL)
+    assert process.wait() == -signal.SIGKILL
+    train_command(["--out", str(killed), "--resume", "--threads", "1"])
+    for file in ("policy.safetensors", "history.csv", "checkpoints/00000012/network.safetensors"):
+        assert (killed / file).read_bytes() == (tmp_path / "straight" / file).read_bytes()
+
+
+def test_half_written_checkpoint_is_ignored(tmp_path: Path) -> None:
+    run = checkpoint.start(tmp_path, TINY)
+    run.validate()
+    checkpoint.save(tmp_path, run, 0.0)
+    (tmp_path / "checkpoints" / "00000002.partial").mkdir()
+    assert checkpoint.resume(tmp_path)[0].update == 0
+
+
+def test_best_policy_is_kept_and_loads(tmp_path: Path) -> None:
+    run = checkpoint.start(tmp_path / "mine", TINY)
+    for event in run.run():
+        if isinstance(event, Validation):
+            checkpoint.save(tmp_path / "mine", run, 0.0)
+    best = max(run.history, key=lambda each: each.completion)
+    policy = load_policy(tmp_path / "mine")
+    assert policy.name == "mine"
+    assert policy.info.trained["validation_completion"] == best.completion
+    assert policy.info.network == TINY.network
+
+
+def test_a_folder_holds_one_run(tmp_path: Path) -> None:
+    checkpoint.start(tmp_path, TINY)
+    with pytest.raises(ConfigError, match=r"already holds a run; go on with it \(--resume\)"):
+        checkpoint.start(tmp_path, TINY)
+    with pytest.raises(ConfigError, match=r"holds no run to resume"):
+        checkpoint.resume(tmp_path / "elsewhere")
+
+
+def _saved(tmp_path: Path) -> Path:
+    run = checkpoint.start(tmp_path, TINY)
+    run.validate()
+    run.step()
+    run.validate()
+    checkpoint.save(tmp_path, run, 0.0)
+    return tmp_path / "checkpoints" / "00000001"
+
+
+@pytest.mark.parametrize(
+    ("file", "content", "sentence"),
+    [
+        ("network.safetensors", b"garbage", "not a readable safetensors file"),
+        ("network.safetensors", None, "no such file"),
+        ("optimizer.safetensors", b"", "not a readable safetensors file"),
+        ("state.json", b"{", "state.json"),
+        ("state.json", b'{"update": "two", "seconds": 1, "history": []}', r"Expected `int`, got `str`"),
+        ("state.json", b'{"update": 1, "seconds": 1, "history": [], "extra": 1}', "unknown field 'extra'"),
+        ("../../config.json", b'{"updates": 5, "learning_rte": 1}', "unknown field 'learning_rte'"),
+        ("../../config.json", b'{"updates": -5}', "updates is -5; expected a whole number >= 1"),
+    ],
+)
+def test_damaged_run_is_told_in_a_sentence(tmp_path: Path, file: str, content: bytes | None, sentence: str) -> None:
+    path = _saved(tmp_path) / file
+    path.unlink() if content is None else path.write_bytes(content)
+    with pytest.raises(ConfigError, match=sentence):
+        checkpoint.resume(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"embedding": 64}, r"has shape .*; the architecture needs"),
+        ({"moments": 4}, "is missing; the weights belong to another architecture"),
+        ({"decision_features": True}, "is missing; the weights belong to another architecture"),
+        ({"moments": 2}, "has (no place in the architecture|shape)"),
+        ({"embeding": 32}, "unknown field 'embeding'"),
+        ({"heads": "four"}, r"Expected `int`, got `str`"),
+    ],
+)
+def test_policy_that_does_not_fit_is_refused(tmp_path: Path, change: dict[str, object], sentence: str) -> None:
+    _saved(tmp_path)
+    info = json.loads((tmp_path / "policy.json").read_text())
+    info["network"].update(change)
+    (tmp_path / "policy.json").write_text(json.dumps(info))
+    with pytest.raises(ConfigError, match=sentence):
+        load_policy(tmp_path)
+
+
+def test_weights_that_are_not_finite_are_refused(tmp_path: Path) -> None:
+    run = Reinforce(TINY)
+    run.validate()
+    with torch.no_grad():
+        next(run.network.parameters())[0] = float("nan")
+    from mrta_zoo.policies.weights import save_policy
+
+    save_policy(tmp_path / "policy.safetensors", run.network, checkpoint.policy_info(run, 0.0))
+    with pytest.raises(ConfigError, match="not finite"):
+        load_policy(tmp_path)
+
+
+def test_unknown_policy_is_told(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"there is no policy 'capm'; expected one of"):
+        load_policy("capm")

@@ -1,0 +1,129 @@
+"""REINFORCE: its gradient, its determinism, and that it learns."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import torch
+
+from mrta_zoo import Scenario
+from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.generators import UniformGenerator
+from mrta_zoo.policies.capam.config import NetworkConfig
+from mrta_zoo.policies.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.rollout import roll_out
+from mrta_zoo.policies.sharing import build_network
+from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.reinforce import Reinforce, Validation, surrogate_loss
+
+SMALL = NetworkConfig(embedding=32, heads=4)
+TINY = TrainConfig(
+    network=SMALL, tasks=10, min_robots=1, max_robots=3, scenarios=4, samples=4, updates=4, epoch=2, validation_scenarios=8
+)
+
+
+@pytest.mark.parametrize("sharing", ["shared", "independent"])
+@pytest.mark.parametrize("decision_features", [False, True])
+def test_surrogate_gradient_is_that_of_decisions_taken_one_by_one(sharing: str, decision_features: bool) -> None:
+    config = replace(SMALL, decision_features=decision_features)
+    network = build_network(config, sharing, robots=4, seed=0)  # type: ignore[arg-type]
+    rng = np.random.default_rng(0)
+    # Missions of very different lengths, so that some are dropped on the way.
+    scenarios = ScenarioBatch.of(
+        [UniformGenerator(tasks=n, robots=(1, 4))(rng) for n in (3, 40, 12)]  # type: ignore[arg-type]
+    )
+    rollout = roll_out(
+        network, scenarios, samples=3, generator=torch.Generator().manual_seed(0), keep_segments=True, keep_plans=True
+    )
+    advantage = torch.randn(3, 3, generator=torch.Generator().manual_seed(1))
+    surrogate_loss(network, scenarios, rollout, advantage).backward()
+    gradients = {name: p.grad.clone() for name, p in network.named_parameters() if p.grad is not None}
+
+    network.zero_grad(set_to_none=True)
+    repeated = scenarios.repeat(3)
+    mission = BatchMission(repeated)
+    position = [[0] * scenarios.num_robots for _ in range(9)]
+    encoding = network.encode(Tasks.of_batch(repeated))
+    log_prob = torch.zeros(9)
+    while not mission.done.all():
+        action = torch.zeros(9, dtype=torch.int64)
+        for row, robot in enumerate(mission.actor.tolist()):
+            if robot >= 0:
+                action[row] = rollout.plans[row].routes[robot][position[row][robot]]
+                position[row][robot] += 1
+        scores = network(encoding, Moments.of_batch(mission))[:, 0].gather(1, action[:, None])[:, 0]
+        log_prob = log_prob + torch.where(mission.done, 0.0, scores)
+        mission.step(action)
+    torch.testing.assert_close(log_prob.detach(), rollout.log_prob, rtol=1e-4, atol=1e-4)
+    (advantage.flatten() * log_prob).mean().backward()
+    assert gradients
+    for name, parameter in network.named_parameters():
+        if parameter.grad is not None:
+            torch.testing.assert_close(gradients[name], parameter.grad, rtol=1e-3, atol=1e-5, msg=name)
+
+
+@pytest.mark.parametrize("baseline", ["samples", "rollout"])
+@pytest.mark.parametrize("sharing", ["shared", "independent"])
+def test_a_seed_gives_the_same_run(baseline: str, sharing: str) -> None:
+    config = replace(TINY, baseline=baseline, sharing=sharing)
+    runs = [list(Reinforce(each).run()) for each in (config, config, replace(config, seed=1))]
+    assert runs[0] == runs[1] != runs[2]
+    assert [event.update for event in runs[0] if isinstance(event, Validation)] == [0, 2, 4]
+
+
+class Detour:
+    """One robot, two tasks: near (10 away) and far (20 away, the other side); work takes no time.
+
+    The far one is due at 20, the near one at 50. Far first: done at 20 and 20 + 30 = 50, both in time.
+    Near first: 10, then 10 + 30 = 40 > 20, too late. So the far task must come first; nearest completes half.
+    """
+
+    def __call__(self, rng: np.random.Generator, name: str = "detour") -> Scenario:
+        angle = rng.uniform(0, 2 * np.pi)
+        step = np.array([np.cos(angle), np.sin(angle)])
+        places, due = np.array([50 + 10 * step, 50 - 20 * step]), np.array([50.001, 20.001])
+        order = rng.permutation(2)
+        return Scenario(places[order], due[order], np.zeros(2), [[50, 50]], [1.0], name=name)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {},
+        {"baseline": "rollout", "samples": 1, "scenarios": 64},
+        {"sharing": "independent"},
+        {"network": NetworkConfig(encoder="attention", embedding=32, heads=4, layers=2)},
+        {"network": NetworkConfig(embedding=32, heads=4, decision_features=True)},
+        {"objective": "cost", "entropy": 0.01},
+    ],
+    ids=["capam", "rollout-baseline", "independent", "am", "decision-features", "cost-and-entropy"],
+)
+def test_learns_to_pass_the_near_task_by(change: dict[str, object]) -> None:
+    config = replace(TINY, max_robots=1, scenarios=16, updates=60, epoch=60, learning_rate=3e-3, clip_norm=10.0)
+    run = Reinforce(replace(config, **change), generator=Detour())  # type: ignore[arg-type]
+    *_, last = run.run()
+    assert isinstance(last, Validation)
+    assert last.completion > 0.95
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"updates": 0}, "updates is 0; expected a whole number >= 1"),
+        ({"learning_rate": 0.0}, "learning_rate is 0.0; expected a number > 0"),
+        ({"learning_rate": float("nan")}, "learning_rate is nan; expected a number > 0"),
+        ({"max_robots": 0}, "max_robots is 0; expected at least min_robots, 1"),
+        ({"samples": 1}, "samples is 1, expected >= 2"),
+        ({"baseline": "critic"}, "baseline is 'critic'; expected one of samples, rollout"),
+        ({"mask_rule": "all"}, "mask_rule is 'all'; expected one of feasible, active, unvisited"),
+        ({"significance": 1.0}, "significance is 1.0; expected a number between 0 and 1"),
+        ({"seed": -1}, "seed is -1; expected a whole number >= 0"),
+        ({"device": "tpu9"}, "device is 'tpu9'; expected cpu, cuda or auto"),
+    ],
+)
+def test_bad_configurations_are_refused(change: dict[str, object], sentence: str) -> None:
+    with pytest.raises(ConfigError, match=sentence):
+        replace(TINY, **change)  # type: ignore[arg-type]

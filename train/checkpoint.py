@@ -1,0 +1,185 @@
+"""A training run on disk: it survives `kill -9` at any moment, and resumes to the same result.
+
+A run's folder holds::
+
+    config.json                        the TrainConfig
+    checkpoints/00000050/              one folder a checkpoint, named after the update; it appears all at once
+        network.safetensors            the weights
+        optimizer.safetensors          Adam's moments
+        baseline.safetensors           the rollout baseline's weights, if there is one
+        state.json                     update, time spent, validation history
+    policy.safetensors, policy.json    the policy with the best validation so far
+    history.csv                        the validation history, for people and plots
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import shutil
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+
+import torch
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.policies.weights import (
+    PolicyInfo,
+    load_state,
+    read_json,
+    read_tensors,
+    save_policy,
+    write_json,
+    write_tensors,
+)
+from mrta_zoo.train.baselines import RolloutBaseline
+from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.reinforce import Reinforce, Validation
+
+
+@dataclass(frozen=True, slots=True)
+class RunState:
+    """What a checkpoint holds besides tensors."""
+
+    update: int
+    seconds: float
+    """Time spent training, over all sessions of the run."""
+    history: list[Validation]
+
+
+def start(folder: Path, config: TrainConfig) -> Reinforce:
+    """Begin a run in a new or empty folder.
+
+    Raises:
+        ConfigError: if the folder already holds a run, or can't be written.
+    """
+    if (folder / "config.json").exists():
+        raise ConfigError(f"{folder} already holds a run; go on with it (--resume), or choose another folder")
+    try:
+        (folder / "checkpoints").mkdir(parents=True, exist_ok=True)
+        write_json(folder / "config.json", config)
+    except OSError as error:
+        raise ConfigError(f"{folder}: can't write a run there ({error.strerror})") from None
+    return Reinforce(config)
+
+
+def resume(folder: Path) -> tuple[Reinforce, float]:
+    """The run in `folder` as of its last checkpoint, and the seconds spent so far.
+
+    Raises:
+        ConfigError: if there is no run, or its files are damaged.
+    """
+    run = Reinforce(saved_config(folder))
+    numbers = _checkpoints(folder)
+    if not numbers:
+        return run, 0.0
+    at = folder / "checkpoints" / _name(numbers[-1])
+    state = read_json(at / "state.json", RunState)
+    load_state(run.network, read_tensors(at / "network.safetensors"), at / "network.safetensors")
+    _load_optimizer(run, at / "optimizer.safetensors")
+    if isinstance(run.baseline, RolloutBaseline):
+        path = at / "baseline.safetensors"
+        load_state(run.baseline.network, read_tensors(path), path)
+    run.update = state.update
+    run.history = list(state.history)
+    return run, state.seconds
+
+
+def saved_config(folder: Path) -> TrainConfig:
+    """The configuration of the run in `folder`.
+
+    Raises:
+        ConfigError: if there is no run.
+    """
+    if not (folder / "config.json").exists():
+        raise ConfigError(f"{folder} holds no run to resume: there is no config.json")
+    return read_json(folder / "config.json", TrainConfig)
+
+
+def save(folder: Path, run: Reinforce, seconds: float) -> None:
+    """Write a checkpoint of the run, drop old ones, and keep the best policy."""
+    final = folder / "checkpoints" / _name(run.update)
+    partial = final.with_name(final.name + ".partial")
+    shutil.rmtree(partial, ignore_errors=True)
+    partial.mkdir(parents=True)
+    write_tensors(partial / "network.safetensors", dict(run.network.state_dict()))
+    write_tensors(partial / "optimizer.safetensors", _optimizer_tensors(run))
+    if isinstance(run.baseline, RolloutBaseline):
+        write_tensors(partial / "baseline.safetensors", dict(run.baseline.network.state_dict()))
+    write_json(partial / "state.json", RunState(run.update, round(seconds, 1), run.history))
+    # Before the checkpoint counts: a run killed in between validates again and writes the same policy.
+    if run.history and run.history[-1].completion >= max(each.completion for each in run.history):
+        save_policy(folder / "policy.safetensors", run.network, policy_info(run, seconds))
+    _write_history(folder, run.history)
+    shutil.rmtree(final, ignore_errors=True)
+    os.replace(partial, final)
+    for number in _checkpoints(folder)[: -run.config.keep_checkpoints]:
+        shutil.rmtree(folder / "checkpoints" / _name(number), ignore_errors=True)
+
+
+def policy_info(run: Reinforce, seconds: float) -> PolicyInfo:
+    """What is saved beside a run's policy."""
+    last = run.history[-1]
+    trained = {
+        "config": asdict(run.config),
+        "updates": run.update,
+        "episodes": last.episodes,
+        "seconds": round(seconds),
+        "torch": str(torch.__version__),
+        "device": run.device.type,
+        "threads": torch.get_num_threads(),
+        "validation_completion": last.completion,
+        "validation_cost": last.cost,
+    }
+    config = run.config
+    return PolicyInfo(
+        network=config.network,
+        sharing=config.sharing,
+        robots=config.max_robots,
+        mask_rule=config.mask_rule,
+        trained=trained,
+    )
+
+
+def _checkpoints(folder: Path) -> list[int]:
+    names = (each.name for each in (folder / "checkpoints").iterdir()) if (folder / "checkpoints").exists() else ()
+    return sorted(int(name) for name in names if name.isdigit())
+
+
+def _name(update: int) -> str:
+    return f"{update:08d}"
+
+
+def _optimizer_tensors(run: Reinforce) -> dict[str, torch.Tensor]:
+    tensors = {}
+    for name, parameter in run.network.named_parameters():
+        for key, value in run.optimizer.state.get(parameter, {}).items():
+            tensors[f"{name}/{key}"] = value
+    return tensors
+
+
+def _load_optimizer(run: Reinforce, path: Path) -> None:
+    tensors = read_tensors(path)
+    for name, parameter in run.network.named_parameters():
+        keys = ("step", "exp_avg", "exp_avg_sq")
+        if not tensors:  # a checkpoint from before the first update
+            continue
+        missing = [key for key in keys if f"{name}/{key}" not in tensors]
+        if missing:
+            raise ConfigError(f"{path}: {name}/{missing[0]} is missing; the checkpoint is damaged")
+        state = {key: tensors[f"{name}/{key}"] for key in keys}
+        # Adam keeps its step counter on the CPU, its moments beside the parameter.
+        run.optimizer.state[parameter] = {
+            key: value if key == "step" else value.to(parameter.device) for key, value in state.items()
+        }
+
+
+def _write_history(folder: Path, history: list[Validation]) -> None:
+    text = io.StringIO()
+    writer = csv.DictWriter(text, [each.name for each in fields(Validation)], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(asdict(each) for each in history)
+    partial = folder / "history.csv.partial"
+    partial.write_text(text.getvalue(), encoding="utf-8")
+    os.replace(partial, folder / "history.csv")

@@ -1,0 +1,165 @@
+"""`mrta-zoo train`: flags, progress bar, TensorBoard."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Annotated
+
+import torch
+import tyro
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.train import checkpoint
+from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.presets import PRESETS
+from mrta_zoo.train.reinforce import Reinforce, Update
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrainCommand:
+    """Train a policy by REINFORCE with one network for all robots (or one for each: --sharing independent).
+
+    Choose a preset, and change what you like with the flags below; their defaults are the preset's.
+
+    Example: mrta-zoo train --preset smoke --out runs/smoke
+
+    The folder then holds policy.safetensors and policy.json (the best policy by validation; usable as
+    `mrta-zoo eval --methods runs/smoke`), config.json, history.csv, checkpoints, and TensorBoard events
+    (`tensorboard --logdir runs`). Stopped at any moment, even killed, the run goes on with --resume to the same
+    result.
+    """
+
+    preset: str = "fast"
+    """Where the other flags' defaults come from: paper (Table I of the paper, for a GPU), fast (the paper's
+    network, an hour or two on 2 CPU cores), fast-plus (with decision-time features), smoke (about a minute)."""
+    out: Path
+    """Folder of the run."""
+    resume: bool = False
+    """Go on with the run in --out; its configuration is kept."""
+    threads: int = 0
+    """CPU threads; 0 leaves the choice to torch. Results are the same only for the same number of threads."""
+    config: Annotated[TrainConfig, tyro.conf.arg(name="")] = field(default_factory=TrainConfig)
+
+
+def train_command(argv: Sequence[str]) -> None:
+    """Run `mrta-zoo train` with these arguments.
+
+    Raises:
+        ConfigError: if an option makes no sense or the folder holds no run, or already one.
+    """
+    command = parse(argv)
+    if command.threads < 0:
+        raise ConfigError(f"threads is {command.threads}; expected a whole number >= 0")
+    if command.threads:
+        torch.set_num_threads(command.threads)
+    if command.resume:
+        run, seconds = checkpoint.resume(command.out)
+        changed = [f.name for f in fields(TrainConfig) if getattr(command.config, f.name) != getattr(run.config, f.name)]
+        if changed:
+            raise ConfigError(
+                f"--resume keeps the run's configuration; {changed[0]} is {getattr(run.config, changed[0])} in "
+                f"{command.out}, not {getattr(command.config, changed[0])}"
+            )
+    else:
+        run, seconds = checkpoint.start(command.out, command.config), 0.0
+    train(run, command.out, seconds)
+
+
+def parse(argv: Sequence[str]) -> TrainCommand:
+    """Flags to a command; the preset (or, to be resumed, the saved run) supplies the defaults."""
+    preset = _peek(argv, "--preset") or "fast"
+    if preset not in PRESETS:
+        raise ConfigError(f"there is no preset {preset!r}; expected one of {', '.join(PRESETS)}")
+    out = _peek(argv, "--out")
+    config = PRESETS[preset]
+    if "--resume" in argv and out and "--help" not in argv:
+        config = checkpoint.saved_config(Path(out))
+    default = TrainCommand(preset=preset, out=Path(out) if out else tyro.MISSING, config=config)
+    return tyro.cli(
+        TrainCommand,
+        args=list(argv),
+        prog="mrta-zoo train",
+        default=default,
+        config=(tyro.conf.OmitArgPrefixes,),
+    )
+
+
+def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console | None = None) -> None:
+    """Train to the end, showing progress and leaving checkpoints in `folder`.
+
+    Args:
+        run: the run, fresh or resumed.
+        folder: where checkpoints, policy and TensorBoard events go.
+        seconds: time already spent on it.
+        console: where to show progress; standard error by default.
+    """
+    from torch.utils.tensorboard import SummaryWriter
+
+    console = console or Console(stderr=True)
+    config = run.config
+    begun = time.perf_counter() - seconds
+    first = run.update
+    per_update = config.scenarios * config.samples
+    columns = (
+        TextColumn("update {task.completed}/{task.total}"),
+        BarColumn(bar_width=None),
+        TextColumn("{task.fields[rate]:.0f} episodes/s"),
+        TextColumn("completion {task.fields[completion]}"),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+    with (
+        SummaryWriter(str(folder / "tensorboard"), purge_step=first) as board,
+        Progress(*columns, console=console, disable=not console.is_terminal) as progress,
+    ):
+        bar = progress.add_task("", total=config.updates, completed=first, rate=0.0, completion="-")
+        session = time.perf_counter()
+        for event in run.run():
+            now = time.perf_counter()
+            if isinstance(event, Update):
+                rate = (event.update - first) * per_update / (now - session)
+                progress.update(bar, completed=event.update, rate=rate)
+                board.add_scalar("train/loss", event.loss, event.update)
+                board.add_scalar("train/gradient_norm", event.gradient_norm, event.update)
+                board.add_scalar("train/learning_rate", event.learning_rate, event.update)
+                board.add_scalar("train/episodes_per_second", rate, event.update)
+                continue
+            board.add_scalar("validation/completion", event.completion, event.update)
+            board.add_scalar("validation/cost", event.cost, event.update)
+            checkpoint.save(folder, run, now - begun)
+            shown = f"{100 * event.completion:.2f} %"
+            progress.update(bar, completion=shown)
+            note = "  (baseline replaced)" if event.baseline_replaced else ""
+            progress.console.print(
+                f"update {event.update:>6}  episodes {event.episodes:>9,}  validation completion {shown}  "
+                f"cost {event.cost:.4f}  {now - begun:.0f} s{note}",
+                highlight=False,
+                soft_wrap=True,
+            )
+    best = max(run.history, key=lambda each: each.completion)
+    console.print(
+        f"Best validation completion {100 * best.completion:.2f} % at update {best.update}; "
+        f"the policy is in {folder / 'policy.safetensors'}",
+        highlight=False,
+        soft_wrap=True,
+    )
+
+
+def _peek(argv: Sequence[str], flag: str) -> str | None:
+    """The value of a flag, before the real parsing, whose defaults depend on it."""
+    for index, argument in enumerate(argv):
+        if argument == flag and index + 1 < len(argv):
+            return argv[index + 1]
+        if argument.startswith(flag + "="):
+            return argument[len(flag) + 1 :]
+    return None
+
+
+if __name__ == "__main__":
+    train_command(sys.argv[1:])

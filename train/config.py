@@ -1,0 +1,104 @@
+"""Everything a training run depends on: the same dataclass is the Python API, the flags and the saved JSON."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal, get_args
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.policies.capam.config import NetworkConfig
+from mrta_zoo.policies.sharing import Sharing
+from mrta_zoo.rules import MaskRule
+
+BaselineName = Literal["samples", "rollout"]
+ObjectiveName = Literal["cost", "completion"]
+GeneratorName = Literal["taptc", "uniform", "mixture"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrainConfig:
+    """One training run. The same configuration on the same machine gives the same weights.
+
+    Attributes:
+        network: architecture of the policy network.
+        sharing: one network for all robots ("shared"), or one for each ("independent").
+        generator: distribution of the training scenarios: "taptc" (fitted to the benchmark), "uniform" (paper
+            §IV-A), or "mixture" (half of each).
+        tasks: number of tasks of each scenario.
+        min_robots: fewest robots of a scenario.
+        max_robots: most robots of a scenario.
+        mask_rule: what a robot may choose.
+        objective: what to minimise: "cost" (Eq. 1 of the paper, divided by the number of tasks), or one minus the
+            completion rate ("completion").
+        baseline: what a mission's outcome is compared with: the mean of the other samples of its scenario
+            ("samples"), or the greedy rollout of the best policy so far, replaced when a paired t-test says that
+            the present one is better ("rollout", the paper's).
+        scenarios: scenarios per update.
+        samples: missions sampled of each scenario; at least 2 for the "samples" baseline.
+        updates: number of gradient steps.
+        learning_rate: Adam's step size at the start.
+        final_learning_rate: Adam's step size at the end, reached along a cosine.
+        clip_norm: gradients are scaled down to at most this norm.
+        normalise: whether advantages are divided by their standard deviation over the batch.
+        entropy: weight of an entropy bonus, per decision.
+        epoch: updates between two validations, each with a checkpoint, and with the baseline's t-test.
+        validation_scenarios: number of validation scenarios, drawn once from the training distribution.
+        significance: level of the baseline's t-test.
+        seed: of everything random.
+        keep_checkpoints: how many of the latest checkpoints to keep.
+        device: "cpu", "cuda", or "auto" (a GPU if there is one).
+    """
+
+    network: NetworkConfig = field(default_factory=NetworkConfig)
+    sharing: Sharing = "shared"
+    generator: GeneratorName = "taptc"
+    tasks: int = 100
+    min_robots: int = 2
+    max_robots: int = 7
+    mask_rule: MaskRule = "feasible"
+    objective: ObjectiveName = "completion"
+    baseline: BaselineName = "samples"
+    scenarios: int = 16
+    samples: int = 8
+    updates: int = 1000
+    learning_rate: float = 3e-4
+    final_learning_rate: float = 3e-5
+    clip_norm: float = 1.0
+    normalise: bool = True
+    entropy: float = 0.0
+    epoch: int = 50
+    validation_scenarios: int = 96
+    significance: float = 0.05
+    seed: int = 0
+    keep_checkpoints: int = 3
+    device: str = "auto"
+
+    def __post_init__(self) -> None:
+        whole = ("tasks", "min_robots", "scenarios", "samples", "updates", "epoch", "keep_checkpoints")
+        for name in whole:
+            if getattr(self, name) < 1:
+                raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 1")
+        for name in ("learning_rate", "final_learning_rate", "clip_norm"):
+            if not getattr(self, name) > 0:
+                raise ConfigError(f"{name} is {getattr(self, name)}; expected a number > 0")
+        if self.max_robots < self.min_robots:
+            raise ConfigError(f"max_robots is {self.max_robots}; expected at least min_robots, {self.min_robots}")
+        if self.validation_scenarios < 2:
+            raise ConfigError(f"validation_scenarios is {self.validation_scenarios}; expected at least 2")
+        if not 0 < self.significance < 1:
+            raise ConfigError(f"significance is {self.significance}; expected a number between 0 and 1")
+        if self.entropy < 0:
+            raise ConfigError(f"entropy is {self.entropy}; expected a number >= 0")
+        if self.seed < 0:
+            raise ConfigError(f"seed is {self.seed}; expected a whole number >= 0")
+        for name, names in (
+            ("baseline", BaselineName), ("objective", ObjectiveName), ("generator", GeneratorName),
+            ("sharing", Sharing), ("mask_rule", MaskRule),
+        ):  # fmt: skip
+            if getattr(self, name) not in get_args(names):
+                choices = ", ".join(get_args(names))
+                raise ConfigError(f"{name} is {getattr(self, name)!r}; expected one of {choices}")
+        if self.device not in ("cpu", "cuda", "auto"):
+            raise ConfigError(f"device is {self.device!r}; expected cpu, cuda or auto")
+        if self.baseline == "samples" and self.samples < 2:
+            raise ConfigError("the 'samples' baseline compares samples of a scenario; samples is 1, expected >= 2")

@@ -1,0 +1,25 @@
+"""The short training run of `mrta-zoo demo`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from rich.console import Console
+
+from mrta_zoo.train import checkpoint
+from mrta_zoo.train.cli import train
+from mrta_zoo.train.presets import PRESETS
+from mrta_zoo.train.reinforce import Validation
+
+
+def short_training(folder: Path, console: Console | None = None) -> list[Validation]:
+    """Train a small CapAM from scratch for under a minute, in `folder`, which must not hold a run yet.
+
+    Returns:
+        The validation history: it rises visibly.
+    """
+    config = replace(PRESETS["smoke"], updates=120, epoch=20)
+    run = checkpoint.start(folder, config)
+    train(run, folder, console=console)
+    return run.history
