@@ -37,11 +37,7 @@ def _draw(rng: np.random.Generator, bounds: tuple[float, float], count: int) -> 
 
 
 def _is_number(value: object) -> bool:
-    return (
-        isinstance(value, (int, float, np.number))
-        and not isinstance(value, bool)
-        and bool(np.isfinite(value))
-    )
+    return isinstance(value, (int, float, np.number)) and not isinstance(value, bool) and bool(np.isfinite(value))
 
 
 def _pair(value: Any) -> tuple[Any, Any] | None:
@@ -57,9 +53,7 @@ def _range(field: str, value: Any, positive: bool) -> tuple[float, float]:
     pair = _pair(value)
     if pair is None or pair[0] > pair[1] or pair[0] < 0 or (positive and pair[0] == 0):
         bound = "> 0" if positive else ">= 0"
-        raise ConfigError(
-            f"{field} is {value!r}; expected (lowest, highest), finite numbers {bound} in order"
-        )
+        raise ConfigError(f"{field} is {value!r}; expected (lowest, highest), finite numbers {bound} in order")
     return float(pair[0]), float(pair[1])
 
 
@@ -205,14 +199,13 @@ class TaptcGenerator:
         if self.group != "tight":
             earliest *= self.slack_factor if self.group == "slack" else min(1.0, self.slack_factor)
         if not _is_number(self.low) or not 0 <= self.low < earliest:
-            raise ConfigError(
-                f"low is {self.low!r}; expected a number >= 0 and < {earliest:g}, the earliest D"
-            )
+            raise ConfigError(f"low is {self.low!r}; expected a number >= 0 and < {earliest:g}, the earliest D")
         mean = (self.low + earliest) / 2
         most = float(np.floor(mean)) if self.integer else mean
         if self.min_deadline > most:
             raise ConfigError(
-                f"min_deadline is {self.min_deadline!r}; expected at most {most:g}, the least mean of drawn deadlines"
+                f"min_deadline is {self.min_deadline!r}; expected at most {most:g}, "
+                "the least mean of the drawn deadlines"
             )
         if self.integer and min(self.map_size) < 1:
             raise ConfigError(f"map_size is {self.map_size}; whole coordinates need sides >= 1")

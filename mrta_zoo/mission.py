@@ -112,10 +112,7 @@ class Mission:
         return [
             robot
             for robot, ready in enumerate(self.ready)
-            if ready == self.time
-            and not self.retired[robot]
-            and self.heading[robot] < 0
-            and self.mask(robot).any()
+            if ready == self.time and not self.retired[robot] and self.heading[robot] < 0 and self.mask(robot).any()
         ]
 
     def reasons(self, robot: int) -> npt.NDArray[np.int8]:
@@ -219,18 +216,14 @@ class Mission:
         if not 0 <= robot < self.scenario.num_robots:
             raise ActionError(f"there is no robot {robot}; the scenario has {self.scenario.num_robots}")
         if self.retired[robot] or self.ready[robot] != self.time:
-            raise ActionError(
-                f"robot {robot} is not free at time {self.time:g}; robot {self.actor} is to act"
-            )
+            raise ActionError(f"robot {robot} is not free at time {self.time:g}; robot {self.actor} is to act")
         if self.heading[robot] >= 0:
             raise ActionError(
                 f"robot {robot} has just taken task {self.heading[robot]} and cannot take task {task} too; "
                 "advance the mission first"
             )
         if not 0 <= task < self.scenario.num_tasks:
-            raise ActionError(
-                f"robot {robot} chose task {task}; tasks are numbered 0 to {self.scenario.num_tasks - 1}"
-            )
+            raise ActionError(f"robot {robot} chose task {task}; tasks are numbered 0 to {self.scenario.num_tasks - 1}")
         if not (self._untaken[task] and self._allowed[robot, task]):
             reason = MaskReason(int(self.reasons(robot)[task])).name.lower().replace("_", " ")
             choices = np.flatnonzero(self.mask(robot)).tolist()

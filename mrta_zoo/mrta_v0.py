@@ -121,7 +121,7 @@ from mrta_zoo.observation import FloatTable
 from mrta_zoo.parallel import ParallelMrtaEnv
 from mrta_zoo.render import RENDER_MODES, render
 from mrta_zoo.settings import Settings
-from mrta_zoo.world import Info, World
+from mrta_zoo.world import World
 from mrta_zoo.wrappers import ActionSpaceWrapper, IllegalActionWrapper, OrderWrapper
 
 __all__ = ["env", "parallel_env", "raw_env"]

@@ -32,7 +32,6 @@ To add a feature, widen a table here and fill its column in `Observer`; policies
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from dataclasses import dataclass
 from typing import Any
 
@@ -95,14 +94,14 @@ def observation_space(max_tasks: int, max_robots: int, num_actions: int | None =
     def box(*shape: int) -> spaces.Box:
         return spaces.Box(0.0, 1.0, shape, np.float32)
 
-    observation = OrderedDict(
-        tasks=box(max_tasks, len(TASK_FEATURES)),
-        robots=box(max_robots, len(ROBOT_FEATURES)),
-        ego=box(len(EGO_FEATURES)),
-        mission=box(len(MISSION_FEATURES)),
-    )
+    tables: list[tuple[str, spaces.Space[Any]]] = [  # a list, for a dictionary would be sorted by name
+        ("tasks", box(max_tasks, len(TASK_FEATURES))),
+        ("robots", box(max_robots, len(ROBOT_FEATURES))),
+        ("ego", box(len(EGO_FEATURES))),
+        ("mission", box(len(MISSION_FEATURES))),
+    ]
     mask = spaces.Box(0, 1, (max_tasks if num_actions is None else num_actions,), np.int8)
-    return spaces.Dict({"observation": spaces.Dict(observation), "action_mask": mask})
+    return spaces.Dict([("observation", spaces.Dict(tables)), ("action_mask", mask)])
 
 
 def flat_space(max_tasks: int, max_robots: int) -> spaces.Box:
@@ -243,4 +242,3 @@ def _layout(max_tasks: int, max_robots: int) -> tuple[int, int, int, int]:
     robots = tasks + max_robots * len(ROBOT_FEATURES)
     ego = robots + len(EGO_FEATURES)
     return tasks, robots, ego, ego + len(MISSION_FEATURES)
-

@@ -59,9 +59,7 @@ class ParallelMrtaEnv(ParallelEnv[str, Any, Any]):
         "render_fps": 4,
     }
 
-    def __init__(
-        self, *, on_illegal: Illegal = "terminate", illegal_reward: float = -1.0, **options: Any
-    ) -> None:
+    def __init__(self, *, on_illegal: Illegal = "terminate", illegal_reward: float = -1.0, **options: Any) -> None:
         one_of("on_illegal", on_illegal, get_args(Illegal))
         self.settings = settings = Settings.of(options)
         assert settings.max_tasks is not None
@@ -143,9 +141,7 @@ class ParallelMrtaEnv(ParallelEnv[str, Any, Any]):
         self._owed = [0.0] * len(rewards)
         self._choosing = set(mission.free())
         staggered = self.settings.staggered
-        over = {
-            agent: mission.done or (staggered and mission.retired[world.index[agent]]) for agent in self.agents
-        }
+        over = {agent: mission.done or (staggered and mission.retired[world.index[agent]]) for agent in self.agents}
         return self._result(rewards, losers, over)
 
     def observe(self, agent: str) -> Any:

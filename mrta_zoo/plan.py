@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from operator import index
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,5 +23,5 @@ class Plan:
 
     @classmethod
     def of(cls, routes: Sequence[Sequence[int]], scenario: str = "", method: str = "") -> Plan:
-        """A plan from any nested sequence of task indices."""
-        return cls(tuple(tuple(int(task) for task in route) for route in routes), scenario, method)
+        """A plan from any nested sequence of whole numbers; a TypeError if they are not."""
+        return cls(tuple(tuple(index(task) for task in route) for route in routes), scenario, method)

@@ -54,7 +54,7 @@ def make_reward(reward: RewardName | Reward) -> Reward:
     """
     if callable(reward):
         return reward
-    if reward not in REWARDS:
+    if not isinstance(reward, str) or reward not in REWARDS:
         raise ConfigError(
             f"reward is {reward!r}; expected one of {', '.join(get_args(RewardName))}, or a function of "
             "a mission and the tasks just finished"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +10,10 @@ import numpy.typing as npt
 from mrta_zoo.errors import ScenarioError
 
 FloatArray = npt.NDArray[np.float64]
+
+SMALLEST, LARGEST = 1e-12, 1e12
+"""What a positive quantity may be: times and distances made of such numbers neither overflow nor vanish."""
+BOUNDS = f", from {SMALLEST:g} to {LARGEST:g}"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,7 +35,8 @@ class Scenario:
         name: what files, tables and pictures call this scenario.
 
     Raises:
-        ScenarioError: if an array has the wrong shape, or a value is not finite or out of range.
+        ScenarioError: if an array has the wrong shape, or a value is out of range: positive numbers must lie between
+            `SMALLEST` and `LARGEST`, and none may be NaN or infinite.
     """
 
     task_xy: FloatArray
@@ -46,6 +51,10 @@ class Scenario:
     def __post_init__(self) -> None:
         for attribute in ("task_xy", "deadline", "workload", "robot_xy", "capacity", "speed"):
             object.__setattr__(self, attribute, _frozen(getattr(self, attribute), attribute))
+        for attribute in ("deadline", "capacity"):
+            if getattr(self, attribute).ndim != 1:
+                shape = getattr(self, attribute).shape
+                raise ScenarioError(f"{attribute} has shape {shape}; expected a list of numbers, one each")
         n, m = len(self.deadline), len(self.capacity)
         if n == 0:
             raise ScenarioError("a scenario needs at least one task; got 0")
@@ -62,14 +71,19 @@ class Scenario:
                     f"{attribute} has shape {getattr(self, attribute).shape}; with {n} deadlines and "
                     f"{m} capacities it must be {shape}"
                 )
-        size = tuple(float(side) for side in self.map_size)
-        if len(size) != 2 or not all(np.isfinite(side) and side > 0 for side in size):
-            raise ScenarioError(f"map_size is {self.map_size}; expected two finite numbers > 0")
+        try:
+            size = tuple(float(side) for side in self.map_size)
+        except (TypeError, ValueError):
+            size = ()
+        if len(size) != 2 or not all(SMALLEST <= side <= LARGEST for side in size):
+            raise ScenarioError(f"map_size is {self.map_size!r}; expected two finite numbers > 0{BOUNDS}")
         object.__setattr__(self, "map_size", size)
-        _check(self.deadline, "task", "deadline", self.deadline > 0, "a finite number > 0")
+        for who, what in (("task", "deadline"), ("robot", "capacity"), ("robot", "speed")):
+            values = getattr(self, what)
+            _check(values, who, what, values > 0, "a finite number > 0")
+            _check(values, who, what, (values >= SMALLEST) & (values <= LARGEST), f"a number > 0{BOUNDS}")
         _check(self.workload, "task", "workload", self.workload >= 0, "a finite number >= 0")
-        _check(self.capacity, "robot", "capacity", self.capacity > 0, "a finite number > 0")
-        _check(self.speed, "robot", "speed", self.speed > 0, "a finite number > 0")
+        _check(self.workload, "task", "workload", self.workload <= LARGEST, f"a number from 0 to {LARGEST:g}")
         for who, places in (("task", self.task_xy), ("robot", self.robot_xy)):
             for axis, letter in enumerate("xy"):
                 values = places[:, axis]
@@ -97,6 +111,10 @@ class Scenario:
     def _key(self) -> tuple[object, ...]:
         arrays = (self.task_xy, self.deadline, self.workload, self.robot_xy, self.capacity, self.speed)
         return (self.name, self.map_size, *(array.tobytes() for array in arrays))
+
+    def __reduce__(self) -> tuple[type[Scenario], tuple[object, ...]]:
+        # Through the constructor, so that a copy is checked and read-only, too.
+        return type(self), tuple(getattr(self, each.name) for each in fields(self))
 
     def __repr__(self) -> str:
         return f"Scenario({self.name!r}, {self.num_tasks} tasks, {self.num_robots} robots)"

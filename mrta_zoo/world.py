@@ -131,7 +131,8 @@ class World:
         """(max_tasks,) what `robot` may choose when next free; all 0 for one the scenario does not have."""
         if robot >= len(self.agents):
             return np.zeros(self.max_tasks, dtype=np.int8)
-        return (self._reasons[robot] == _CHOOSABLE).view(np.int8)
+        mask: npt.NDArray[np.int8] = (self._reasons[robot] == _CHOOSABLE).view(np.int8)
+        return mask
 
     def seen_by(self, robot: int) -> Any:
         """What `robot` sees now: tables, or a vector in the flat form."""
@@ -152,9 +153,7 @@ class World:
         try:
             return self.index[agent]
         except (KeyError, TypeError):
-            raise ActionError(
-                f"there is no agent {agent!r}; they are {self.names[0]} to {self.names[-1]}"
-            ) from None
+            raise ActionError(f"there is no agent {agent!r}; they are {self.names[0]} to {self.names[-1]}") from None
 
     def as_action(self, agent: str, action: Any) -> int:
         """An action as a Python integer within the action space.

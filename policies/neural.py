@@ -6,7 +6,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -50,7 +50,12 @@ class NeuralPolicy:
     """
 
     def __init__(
-        self, network: Network, info: PolicyInfo, name: str = "capam", decode: Decode = "greedy", seed: int = 0
+        self,
+        network: Network,
+        info: PolicyInfo,
+        name: str = "capam",
+        decode: Decode = "greedy",
+        seed: int = 0,
     ) -> None:
         _check_decode(decode)
         self.network = network.eval()
@@ -59,7 +64,7 @@ class NeuralPolicy:
         self.decode = decode
         self._generator = torch.Generator().manual_seed(seed)
         self._encoded_for: bytes = b""
-        self._encoding = None
+        self._encoding: Any = None
 
     def act(self, observation: Observation, agent: str = "") -> int:
         """The task to take. `agent` is not needed: the observation says whose it is."""
@@ -122,23 +127,18 @@ class NeuralPolicy:
         generator = torch.Generator().manual_seed(seed)
         while decode == "sample":
             best.offer(
-                roll_out(
-                    self.network, batch, samples=samples, generator=generator, mask_rule=rule, keep_plans=True
-                )
+                roll_out(self.network, batch, samples=samples, generator=generator, mask_rule=rule, keep_plans=True)
             )
             if budget is None or time.perf_counter() >= deadline:
                 break
         return Plan(best.plan.routes, scenario.name, self.name)
 
-    def solve_batch(
-        self, scenarios: Sequence[Scenario], mask_rule: MaskRule | None = None
-    ) -> list[Plan]:
+    def solve_batch(self, scenarios: Sequence[Scenario], mask_rule: MaskRule | None = None) -> list[Plan]:
         """Greedy plans for many missions at once, faster than one by one."""
         rule: MaskRule = mask_rule or self.info.mask_rule
         rollout = roll_out(self.network, ScenarioBatch.of(scenarios), mask_rule=rule, keep_plans=True)
         return [
-            Plan(plan.routes, scenario.name, self.name)
-            for plan, scenario in zip(rollout.plans, scenarios, strict=True)
+            Plan(plan.routes, scenario.name, self.name) for plan, scenario in zip(rollout.plans, scenarios, strict=True)
         ]
 
 

@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import resources
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args
 
@@ -187,14 +188,20 @@ def load_learned(name: str) -> NeuralPolicy:
         ConfigError: if there is none, or its files are damaged.
         MissingExtraError: if torch is not installed.
     """
-    try:
-        import safetensors
-        import torch  # noqa: F401  (heavy, and only learned methods need it)
-    except ImportError:
-        raise MissingExtraError(
-            f"method {name!r} is a trained network and needs torch and safetensors, which are not installed; install "
-            'them with: pip install "mrta_zoo[torch]"'
-        ) from None
+    require_torch(f"method {name!r}")
     from mrta_zoo.policies.neural import load_policy
 
     return load_policy(name)
+
+
+def require_torch(what: str) -> None:
+    """Make sure that trained networks can be used.
+
+    Raises:
+        MissingExtraError: if torch or safetensors is not installed; the message begins with `what`.
+    """
+    for module in ("torch", "safetensors"):
+        if find_spec(module) is None:
+            raise MissingExtraError(
+                f'{what} needs {module}, which is not installed; install it with: pip install "mrta_zoo[torch]"'
+            )

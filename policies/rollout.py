@@ -138,9 +138,7 @@ def _run_segment(
             taken.append((moments, features, action.unflatten(0, shape), live.unflatten(0, shape)))
         mission.step(action)
     if segments is not None:
-        moments = Moments(
-            *(torch.cat([getattr(each[0], f.name) for each in taken], 1) for f in fields(Moments))
-        )
+        moments = Moments(*(torch.cat([getattr(each[0], f.name) for each in taken], 1) for f in fields(Moments)))
         features = None if taken[0][1] is None else torch.cat([each[1] for each in taken], 1)  # type: ignore[misc]
         segments.append(
             Segment(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, cast
 
 import torch
 from torch import Tensor, nn
@@ -38,17 +38,15 @@ class IndependentNetworks(nn.Module):
 
     def encode(self, tasks: Tasks) -> IndependentEncoding:
         """Embed the tasks, once a mission and network."""
-        return IndependentEncoding(tasks, tuple(network.encode(tasks) for network in self.robots))
+        return IndependentEncoding(
+            tasks, tuple(cast(AllocationNetwork, network).encode(tasks) for network in self.robots)
+        )
 
     def features(self, encoding: IndependentEncoding, moments: Moments) -> Tensor | None:
         """As `AllocationNetwork.features`: they hold no weights, so one robot's serve all."""
-        first = self.robots[0]
-        assert isinstance(first, AllocationNetwork)
-        return first.features(encoding.of_robot[0], moments)
+        return cast(AllocationNetwork, self.robots[0]).features(encoding.of_robot[0], moments)
 
-    def forward(
-        self, encoding: IndependentEncoding, moments: Moments, features: Tensor | None = None
-    ) -> Tensor:
+    def forward(self, encoding: IndependentEncoding, moments: Moments, features: Tensor | None = None) -> Tensor:
         """As `AllocationNetwork.forward`, each decision by the network of the robot to act.
 
         Raises:
@@ -60,7 +58,7 @@ class IndependentNetworks(nn.Module):
                 f"robot {highest} has no network: these independent policies were trained for "
                 f"{len(self.robots)} robots; use a shared policy for more"
             )
-        log_probs = self.robots[0](encoding.of_robot[0], moments, features)
+        log_probs: Tensor = self.robots[0](encoding.of_robot[0], moments, features)
         for robot in range(1, highest + 1):
             own = self.robots[robot](encoding.of_robot[robot], moments, features)
             log_probs = torch.where((moments.ego == robot)[..., None], own, log_probs)

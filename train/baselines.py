@@ -56,9 +56,7 @@ class RolloutBaseline:
         significance: level of the paired one-sided t-test.
     """
 
-    def __init__(
-        self, network: Network, objective: Objective, mask_rule: MaskRule, significance: float
-    ) -> None:
+    def __init__(self, network: Network, objective: Objective, mask_rule: MaskRule, significance: float) -> None:
         self.network = copy.deepcopy(network)
         self.objective = objective
         self.mask_rule = mask_rule

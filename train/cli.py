@@ -60,7 +60,9 @@ def train_command(argv: Sequence[str]) -> None:
         torch.set_num_threads(command.threads)
     if command.resume:
         run, seconds = checkpoint.resume(command.out)
-        changed = [f.name for f in fields(TrainConfig) if getattr(command.config, f.name) != getattr(run.config, f.name)]
+        changed = [
+            f.name for f in fields(TrainConfig) if getattr(command.config, f.name) != getattr(run.config, f.name)
+        ]
         if changed:
             raise ConfigError(
                 f"--resume keeps the run's configuration; {changed[0]} is {getattr(run.config, changed[0])} in "

@@ -118,7 +118,7 @@ class Reinforce:
 
         self.optimizer.zero_grad(set_to_none=True)
         surrogate = surrogate_loss(self.network, scenarios, rollout, advantage, config.entropy)
-        surrogate.backward()  # type: ignore[no-untyped-call]
+        surrogate.backward()
         norm = torch.nn.utils.clip_grad_norm_(self.network.parameters(), config.clip_norm)
         self.optimizer.step()
         self.update += 1

@@ -50,13 +50,9 @@ def read_cases(folder: StrPath) -> list[Case]:
         problem = "is not a folder" if root.exists() else "does not exist"
         raise ScenarioError(f"{root} {problem}; expected a folder of cases")
     try:
-        paths = [
-            path for pattern in ("group*/*.txt", "*.json", "*.csv") for path in sorted(root.glob(pattern))
-        ]
+        paths = [path for pattern in ("group*/*.txt", "*.json", "*.csv") for path in sorted(root.glob(pattern))]
     except OSError as error:
-        raise ScenarioError(
-            f"{root} cannot be listed: {error.strerror}; expected a folder of cases"
-        ) from None
+        raise ScenarioError(f"{root} cannot be listed: {error.strerror}; expected a folder of cases") from None
     sources: dict[str, Path] = {}
     scenarios: dict[str, Scenario] = {}
     for path in paths:
@@ -92,21 +88,17 @@ def read_reference(path: StrPath, scenarios: Mapping[str, Scenario]) -> dict[str
     methods = header[3:]
     if header[:3] != ["case", "tasks", "robots"] or not methods:
         raise ScenarioError(
-            f"{where}: header is {shown(','.join(header))}; "
-            "expected case,tasks,robots and a column for each method"
+            f"{where}: header is {shown(','.join(header))}; expected case,tasks,robots and a column for each method"
         )
     for method in methods:
         if not method or header.count(method) > 1:
-            raise ScenarioError(
-                f"{where}: method {shown(method)} is empty or appears twice; expected each once"
-            )
+            raise ScenarioError(f"{where}: method {shown(method)} is empty or appears twice; expected each once")
     references: dict[str, dict[str, int]] = {}
     for where, (name, *numbers) in rows:
         if name in references:
             raise ScenarioError(f"{where}: case {shown(name)} appears twice; expected it once")
         tasks, robots = (
-            count(text, where, what, ScenarioError)
-            for text, what in zip(numbers[:2], ("tasks", "robots"), strict=True)
+            count(text, where, what, ScenarioError) for text, what in zip(numbers[:2], ("tasks", "robots"), strict=True)
         )
         completed = {
             method: count(text, where, method, ScenarioError)
@@ -115,9 +107,7 @@ def read_reference(path: StrPath, scenarios: Mapping[str, Scenario]) -> dict[str
         }
         for method, value in completed.items():
             if value > tasks:
-                raise ScenarioError(
-                    f"{where}: {method} is {value}; expected at most {tasks}, the case's tasks"
-                )
+                raise ScenarioError(f"{where}: {method} is {value}; expected at most {tasks}, the case's tasks")
         if scenario := scenarios.get(name):
             for what, said, is_so in (
                 ("tasks", tasks, scenario.num_tasks),

@@ -86,9 +86,7 @@ def read_table(path: StrPath) -> list[tuple[str, list[str]]]:
                 )
             table.append((where, [cell.strip() for cell in cells]))
     except csv.Error as problem:
-        raise ScenarioError(
-            f"{path}, line {reader.line_num}: {problem}; expected cells separated by commas"
-        ) from None
+        raise ScenarioError(f"{path}, line {reader.line_num}: {problem}; expected cells separated by commas") from None
     if not table:
         raise ScenarioError(f"{path} has no rows; expected a header row")
     return table

@@ -52,9 +52,7 @@ def write_scenario(scenario: Scenario, path: StrPath) -> None:
         try:
             agent_folder.mkdir(exist_ok=True)
         except OSError as problem:
-            raise ScenarioError(
-                f"{agent_folder} cannot be made: {problem.strerror}; expected a folder"
-            ) from None
+            raise ScenarioError(f"{agent_folder} cannot be made: {problem.strerror}; expected a folder") from None
         write_taptc(scenario, path, agent_folder / path.name)
     else:
         raise ScenarioError(f"{path} has the suffix {shown(suffix)}; expected .json, .csv or .txt (TAPTC)")

@@ -123,9 +123,7 @@ def write_json(scenario: Scenario, path: StrPath) -> None:
     Raises:
         ScenarioError: if the file cannot be written.
     """
-    tasks = zip(
-        scenario.task_xy.tolist(), scenario.deadline.tolist(), scenario.workload.tolist(), strict=True
-    )
+    tasks = zip(scenario.task_xy.tolist(), scenario.deadline.tolist(), scenario.workload.tolist(), strict=True)
     robots = zip(scenario.robot_xy.tolist(), scenario.capacity.tolist(), scenario.speed.tolist(), strict=True)
     document = {
         "format": "mrta_zoo.scenario",

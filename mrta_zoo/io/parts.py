@@ -82,9 +82,7 @@ def assemble(main: Part, agents: Part | None) -> Scenario:
                 "expected robots in one of the two files only"
             )
         if agents.tasks:
-            raise ScenarioError(
-                f"{agents.tasks[0].where}: has a task; expected only robots in the agent file"
-            )
+            raise ScenarioError(f"{agents.tasks[0].where}: has a task; expected only robots in the agent file")
     if not agents.robots:
         hint = "; name an agent file with --agents" if agents is main else ""
         raise ScenarioError(f"{agents.path} has 0 robots; expected at least one{hint}")
@@ -128,8 +126,7 @@ def check_inside(rows: Sequence[TaskRow | RobotRow], map_size: tuple[float, floa
         for letter, value, side in (("x", row.x, map_size[0]), ("y", row.y, map_size[1])):
             if not 0 <= value <= side:
                 raise ScenarioError(
-                    f"{row.where}: {letter} is {value!r}; "
-                    f"expected a number from 0 to {side!r}, inside the map"
+                    f"{row.where}: {letter} is {value!r}; expected a number from 0 to {side!r}, inside the map"
                 )
 
 

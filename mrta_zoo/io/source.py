@@ -63,9 +63,7 @@ def write_text(text: str, path: StrPath, error: type[MrtaError]) -> None:
     path = Path(path)
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp") if path.name else path
     try:
-        if (
-            path.exists() and not path.is_file() and not path.is_dir()
-        ):  # a device or pipe: must not be replaced
+        if path.exists() and not path.is_file() and not path.is_dir():  # a device or pipe: must not be replaced
             path.write_text(text, encoding="utf-8")
             return
         try:
@@ -78,9 +76,7 @@ def write_text(text: str, path: StrPath, error: type[MrtaError]) -> None:
         raise error(f"{_printable(path)} cannot be written: {_reason(problem)}") from None
 
 
-def number(
-    text: str, where: str, what: str, least: float, error: type[MrtaError], strict: bool = False
-) -> float:
+def number(text: str, where: str, what: str, least: float, error: type[MrtaError], strict: bool = False) -> float:
     """The number written as `text`, which must be >= `least` (> if `strict`) and finite.
 
     Raises:

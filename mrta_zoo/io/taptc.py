@@ -28,9 +28,7 @@ def read_taptc(task_path: StrPath, agent_path: StrPath | None = None) -> Scenari
         ScenarioError: if a file is missing or malformed, or the two do not fit.
     """
     tasks = read_task_part(task_path)
-    return assemble(
-        tasks, read_agent_part(agent_path if agent_path is not None else find_agent_file(task_path))
-    )
+    return assemble(tasks, read_agent_part(agent_path if agent_path is not None else find_agent_file(task_path)))
 
 
 def find_agent_file(task_path: StrPath) -> Path:
@@ -52,8 +50,7 @@ def find_agent_file(task_path: StrPath) -> Path:
         if os.path.isfile(candidate):  # unlike Path.is_file it is also False without permission
             return candidate
     raise ScenarioError(
-        f"{path}: there is no agent file; looked for {', '.join(map(str, candidates))}; "
-        "name one with --agents"
+        f"{path}: there is no agent file; looked for {', '.join(map(str, candidates))}; name one with --agents"
     )
 
 
@@ -110,16 +107,12 @@ def read_agent_part(path: StrPath) -> Part:
     for where, fields in lines:
         hint = "; is this a task file?" if len(fields) == 5 else ""
         _check_fields(where, fields, _AGENT_LINE, hint)
-        x, y = (
-            number(text, where, what, 0, ScenarioError) for text, what in zip(fields[1:3], "xy", strict=True)
-        )
+        x, y = (number(text, where, what, 0, ScenarioError) for text, what in zip(fields[1:3], "xy", strict=True))
         capacity = number(fields[3], where, "capacity", 0, ScenarioError, strict=True)
         index = count(fields[0], where, "agent id", ScenarioError)
         rows.append((index, RobotRow(where, x, y, capacity, 1.0)))
     _check_count(path, first, num_robots, len(rows), "agent")
-    return Part(
-        path=str(path), robots=in_id_order(rows, "agent"), map=_map(first, header), name=Path(path).stem
-    )
+    return Part(path=str(path), robots=in_id_order(rows, "agent"), map=_map(first, header), name=Path(path).stem)
 
 
 def write_taptc(scenario: Scenario, task_path: StrPath, agent_path: StrPath) -> None:
@@ -163,9 +156,7 @@ def _check_fields(where: str, fields: list[str], expected: str, hint: str) -> No
 
 def _check_count(path: StrPath, first: str, promised: int, found: int, what: str) -> None:
     if promised != found:
-        raise ScenarioError(
-            f"{first}: header says {promised} {what}s; expected {found}, the lines that follow"
-        )
+        raise ScenarioError(f"{first}: header says {promised} {what}s; expected {found}, the lines that follow")
 
 
 def _map(first: str, header: list[str]) -> MapRow:

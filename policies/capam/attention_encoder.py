@@ -26,7 +26,7 @@ class AttentionEncoder(nn.Module):
     def forward(self, nodes: Tensor, exists: Tensor, graph: Tensor) -> Tensor:
         """Embed every task: (S, N, h); 0 for padding. `graph` is not used: attention finds its own weights."""
         keep = exists[..., None].to(nodes.dtype)
-        hidden = self.embed(nodes) * keep
+        hidden: Tensor = self.embed(nodes) * keep
         for layer in self.layers:
             hidden = layer(hidden, exists) * keep
         return hidden
@@ -45,9 +45,7 @@ class _Layer(nn.Module):
 
     def forward(self, hidden: Tensor, exists: Tensor) -> Tensor:
         query, key, value = self.qkv(hidden).unflatten(-1, (3, self.heads, -1)).permute(2, 0, 3, 1, 4)
-        mixed = torch.nn.functional.scaled_dot_product_attention(
-            query, key, value, attn_mask=exists[:, None, None, :]
-        )
+        mixed = torch.nn.functional.scaled_dot_product_attention(query, key, value, attn_mask=exists[:, None, None, :])
         hidden = self.norms[0](hidden + self.out(mixed.transpose(1, 2).flatten(2)))
         normed: Tensor = self.norms[1](hidden + self.feed_forward(hidden))
         return normed

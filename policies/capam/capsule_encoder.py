@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import torch
 from torch import Tensor, nn
 
@@ -32,8 +34,7 @@ class CapsuleEncoder(nn.Module):
         widths = [embedding] + [embedding * moments] * layers
         # One linear map for the K + 1 blocks [F^p, L F^p, …, L^K F^p] side by side is the sum over k in Eq. 3.
         self.capsules = nn.ModuleList(
-            nn.ModuleList(nn.Linear(width * (hops + 1), embedding) for _ in range(moments))
-            for width in widths[:-1]
+            nn.ModuleList(nn.Linear(width * (hops + 1), embedding) for _ in range(moments)) for width in widths[:-1]
         )
         self.project = nn.Linear(widths[-1], embedding)
         self.norm = nn.LayerNorm(embedding)
@@ -55,7 +56,7 @@ class CapsuleEncoder(nn.Module):
         for layer in self.capsules:
             power = torch.ones_like(hidden)
             outputs = []
-            for capsule in layer:  # type: ignore[union-attr]
+            for capsule in cast(nn.ModuleList, layer):
                 power = power * hidden
                 blocks = [power]
                 for _ in range(self.hops):

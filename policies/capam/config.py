@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 from mrta_zoo.errors import ConfigError
-
-EncoderName = Literal["capsule", "attention"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -15,7 +12,7 @@ class NetworkConfig:
     """Architecture of one policy network. The defaults are the paper's (§III and §IV-C).
 
     Attributes:
-        encoder: "capsule" for CapAM, "attention" for the attention model (AM-RL).
+        encoder: "capsule" for CapAM, "attention" for the attention model (AM-RL), or one of your own (`ENCODERS`).
         embedding: h, length of embeddings and of the query; a multiple of `heads`.
         heads: number of attention heads, in the decoder and in the attention encoder.
         layers: L_e, number of encoder layers (1 in CapAM, 3 in AM).
@@ -26,7 +23,7 @@ class NetworkConfig:
         tanh_clip: scores are clipped to ± this, as in Kool et al. (2019).
     """
 
-    encoder: EncoderName = "capsule"
+    encoder: str = "capsule"
     embedding: int = 128
     heads: int = 8
     layers: int = 1
@@ -36,8 +33,6 @@ class NetworkConfig:
     tanh_clip: float = 10.0
 
     def __post_init__(self) -> None:
-        if self.encoder not in ("capsule", "attention"):
-            raise ConfigError(f"encoder is {self.encoder!r}; expected 'capsule' or 'attention'")
         for name in ("embedding", "heads", "layers", "moments"):
             if getattr(self, name) < 1:
                 raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 1")

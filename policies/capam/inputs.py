@@ -146,9 +146,7 @@ def _scales(s: ScenarioBatch) -> Scales:
     )
 
 
-def _tasks(
-    xy: Tensor, deadline: Tensor, workload: Tensor, exists: Tensor, crossing: Tensor, work: Tensor
-) -> Tasks:
+def _tasks(xy: Tensor, deadline: Tensor, workload: Tensor, exists: Tensor, crossing: Tensor, work: Tensor) -> Tasks:
     crossing_share = crossing / (1 - crossing)
     work_share = work / (1 - work)
     return Tasks(xy, deadline, workload, exists, 1 / crossing_share, work_share / crossing_share)

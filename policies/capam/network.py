@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
-from mrta_zoo.policies.capam.attention_encoder import AttentionEncoder
-from mrta_zoo.policies.capam.capsule_encoder import CapsuleEncoder
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.capam.context import Context
 from mrta_zoo.policies.capam.decision_features import FEATURES, Neighbourhood, decision_features
 from mrta_zoo.policies.capam.decoder import AttentionDecoder, Keys
+from mrta_zoo.policies.capam.encoders import build_encoder
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
 
 NODE_FEATURES = 6
@@ -43,11 +42,7 @@ class AllocationNetwork(nn.Module):
         super().__init__()
         self.config = config
         h = config.embedding
-        self.encoder: nn.Module
-        if config.encoder == "capsule":
-            self.encoder = CapsuleEncoder(NODE_FEATURES, h, config.layers, config.hops, config.moments)
-        else:
-            self.encoder = AttentionEncoder(NODE_FEATURES, h, config.layers, config.heads)
+        self.encoder = build_encoder(NODE_FEATURES, config)
         self.context = Context(h)
         self.decoder = AttentionDecoder(h, config.heads, config.tanh_clip)
         self.pair = PairScore(h, config.heads) if config.decision_features else None
@@ -85,8 +80,10 @@ class AllocationNetwork(nn.Module):
             bias, added = self.pair(features, query)
             scores = self.decoder(query, encoding.keys, moments.mask, bias) + added
         over = ~moments.mask.any(-1, keepdim=True)
-        scores = scores.masked_fill(~(moments.mask | over), -torch.inf).masked_fill(over, 0.0)
-        return scores.log_softmax(-1)
+        log_probs: Tensor = (
+            scores.masked_fill(~(moments.mask | over), -torch.inf).masked_fill(over, 0.0).log_softmax(-1)
+        )
+        return log_probs
 
 
 class PairScore(nn.Module):

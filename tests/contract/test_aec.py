@@ -16,8 +16,9 @@ from strategies import scenarios
 from mrta_zoo import Scenario, mrta_v0
 from mrta_zoo.errors import ActionError, ConfigError
 from mrta_zoo.generators import UniformGenerator
-from mrta_zoo.observation import split
-from mrta_zoo.rules import MaskReason
+from mrta_zoo.mission import Mission
+from mrta_zoo.observation import Observer, split
+from mrta_zoo.rules import MaskReason, Status
 
 GENERATOR = UniformGenerator(tasks=(3, 10), robots=(2, 5), deadline=(20, 200))
 FORMS = ["dict", "flat"]
@@ -59,7 +60,7 @@ def completion_rate(env: Any) -> float:
 # --- what is shown --------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=60)
+@settings(max_examples=150)
 @given(
     scenario=scenarios(6, 3),
     rule=st.sampled_from(["feasible", "active", "unvisited"]),
@@ -106,6 +107,71 @@ def test_everything_stays_within_its_space(scenario, rule, form, staggered, seed
         decisions += 1
     assert decisions <= scenario.num_tasks
     assert not env.agents
+
+
+def expected_tables(mission: Mission, robot: int, max_tasks: int, max_robots: int) -> dict[str, np.ndarray]:
+    """The tables from the scenario and the routes alone, number by number."""
+    scenario = mission.scenario
+    length, horizon = max(scenario.map_size), scenario.deadline.max()
+    work, capacity, speed = scenario.workload.max() or 1, scenario.capacity.max(), scenario.speed.max()
+    tasks, robots = np.zeros((max_tasks, 8)), np.zeros((max_robots, 7))
+    finish = np.full(scenario.num_tasks, np.nan)
+    for i, route in enumerate(mission.routes):
+        time, place = 0.0, scenario.robot_xy[i]
+        for task in route:
+            dx, dy = scenario.task_xy[task] - place
+            time = (
+                time + np.sqrt(dx * dx + dy * dy) / scenario.speed[i] + scenario.workload[task] / scenario.capacity[i]
+            )
+            finish[task], place = time, scenario.task_xy[task]
+        robots[i] = (*place / length, scenario.capacity[i] / capacity, scenario.speed[i] / speed,
+                     min(time / horizon, 1), not mission.retired[i], i == robot)  # fmt: skip
+    for j in range(scenario.num_tasks):
+        late = (scenario.deadline[j] if np.isnan(finish[j]) else finish[j]) > scenario.deadline[j]
+        if np.isnan(finish[j]):
+            status = 3 if scenario.deadline[j] < mission.time else 0
+        else:
+            status = 1 if finish[j] > mission.time else 3 if late else 2
+        if finish[j] == mission.time:  # ends at this very moment: of this robot, or of one whose turn it will be
+            status = int(mission.status[j])
+            assert status in (2, 3)
+        tasks[j, :4] = (*scenario.task_xy[j] / length, scenario.deadline[j] / horizon, scenario.workload[j] / work)
+        tasks[j, 4 + status] = 1
+    crossing, labour = length / speed / horizon, work / capacity / horizon
+    elapsed = min(mission.time / horizon, 1)
+    return {"tasks": tasks, "robots": robots, "ego": robots[robot, :5],
+            "mission": np.array([elapsed, crossing / (1 + crossing), labour / (1 + labour)])}  # fmt: skip
+
+
+@pytest.mark.parametrize("rule", ["feasible", "active", "unvisited"])
+@pytest.mark.parametrize("seed", range(4))
+def test_observations_say_what_the_documentation_says(rule, seed):
+    scenario = small_scenario(seed, tasks=9, robots=3)
+    env = started(scenario=scenario, mask_rule=rule, max_tasks=10, max_robots=4)
+    rng = np.random.default_rng(seed)
+    while True:
+        mission = env.unwrapped.mission
+        for robot, agent in enumerate(env.possible_agents[:3]):
+            shown = env.observe(agent)["observation"]
+            for name, table in expected_tables(mission, robot, 10, 4).items():
+                np.testing.assert_allclose(shown[name], table, rtol=1e-6, err_msg=name)
+        for info in env.infos.values():
+            assert info["completed"] == (mission.status == Status.COMPLETED).sum()
+        if mission.done:
+            break
+        env.step(random_action(env.last()[4]["action_mask"], rng))
+
+
+def test_an_observer_can_turn_to_another_mission():
+    scenario = small_scenario(0)
+    first, second = Mission(scenario), Mission(scenario)
+    choices = np.flatnonzero(first.mask(0))
+    first.assign(int(choices[0]))
+    second.assign(int(choices[1]))
+    observer = Observer(scenario, 8, 3)
+    for mission in (first, second, first):
+        assert same(observer.observe(mission, 1), Observer(scenario, 8, 3).observe(mission, 1))
+    assert not same(observer.observe(first, 1), observer.observe(second, 1))
 
 
 def test_flat_holds_the_same_as_the_tables():
@@ -201,7 +267,7 @@ def test_elapsed_is_the_time_since_the_last_decision():
 # --- rewards and termination ----------------------------------------------------------------------------------
 
 
-@settings(max_examples=60)
+@settings(max_examples=150)
 @given(scenarios(6, 3), st.sampled_from(["feasible", "active", "unvisited"]), st.integers(0, 99))
 def test_rewards_sum_to_what_they_promise(scenario, rule, seed):
     n = scenario.num_tasks
@@ -225,7 +291,7 @@ def test_rewards_sum_to_what_they_promise(scenario, rule, seed):
     assert sum(shown["individual"].values()) == pytest.approx(rate)
 
 
-@settings(max_examples=40)
+@settings(max_examples=100)
 @given(scenarios(6, 3), st.integers(0, 99))
 def test_staggered_robots_leave_with_all_they_earned(scenario, seed):
     env = mrta_v0.env(scenario=scenario, reward="individual", staggered=True)
@@ -377,7 +443,12 @@ def test_an_illegal_action_ends_the_episode(form, reward):
 
 @pytest.mark.parametrize("form", FORMS)
 def test_the_raw_environment_explains_an_illegal_action(form):
-    env = started(make=mrta_v0.raw_env, scenario=small_scenario(0, tasks=4), max_tasks=6, observation=form)
+    # Task 1 is 9 away and due at 1; the others can be done.
+    scenario = Scenario(
+        task_xy=[[1, 0], [9, 0], [2, 0], [3, 0]], deadline=[50, 1, 50, 50], workload=[1, 1, 1, 1],
+        robot_xy=[[0, 0], [0, 0]], capacity=[1, 1], map_size=(10, 10),
+    )  # fmt: skip
+    env = started(make=mrta_v0.raw_env, scenario=scenario, max_tasks=6, observation=form)
     before = copy.deepcopy(env.infos)
     legal = np.flatnonzero(before["robot_0"]["action_mask"]).tolist()
     assert legal == [0, 2, 3]
@@ -396,7 +467,7 @@ def test_the_raw_environment_explains_an_illegal_action(form):
         assert same(env.infos, before)  # nothing has changed
         assert env.agent_selection == "robot_0"
     env.step(np.int64(0))
-    with pytest.raises(ActionError, match="robot_1 sent action 0: .*: taken; its choices are"):
+    with pytest.raises(ActionError, match=r"robot_1 sent action 0: .*: taken; its choices are"):
         env.step(0)
 
 

@@ -39,9 +39,7 @@ def check_api(env, observation):
 @pytest.mark.parametrize("make", [mrta_v0.env, mrta_v0.raw_env])
 def test_api(make, mask_rule, reward, observation, staggered):
     scenario = small_scenario(3, tasks=9, robots=4)
-    env = make(
-        scenario=scenario, mask_rule=mask_rule, reward=reward, observation=observation, staggered=staggered
-    )
+    env = make(scenario=scenario, mask_rule=mask_rule, reward=reward, observation=observation, staggered=staggered)
     check_api(env, observation)
 
 

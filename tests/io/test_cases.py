@@ -103,9 +103,7 @@ def test_no_cases(tmp_path: Path) -> None:
 
 def test_two_cases_of_one_name(folder: Path) -> None:
     write_scenario(scenario("c1"), folder / "other.json")
-    with pytest.raises(
-        ScenarioError, match=r"other\.json: the case is called 'c1', as in .*c1\.json; expected"
-    ):
+    with pytest.raises(ScenarioError, match=r"other\.json: the case is called 'c1', as in .*c1\.json; expected"):
         read_cases(folder)
 
 

@@ -108,9 +108,7 @@ def test_plan_with_schedule_and_score(tmp_path: Path) -> None:
     jsonschema.validate(document, schema("plan"))
     assert read_plan(path) == PLAN
     assert document["score"]["completion"] == 0.75
-    assert document["schedule"][2] == [
-        {"task": 3, "arrival": 1.5, "finish": 2.0, "deadline": 9.0, "completed": True}
-    ]
+    assert document["schedule"][2] == [{"task": 3, "arrival": 1.5, "finish": 2.0, "deadline": 9.0, "completed": True}]
     path.write_text(path.read_text().replace("1.25", "-1.0"))
     with pytest.raises(PlanError, match=r"cost is -1\.0; expected a number >= 0"):
         read_plan(path)

@@ -305,9 +305,7 @@ def test_bad_agent_table(tmp_path: Path, content: str, message: str) -> None:
 
 def test_agents_cannot_be_json(tmp_path: Path) -> None:
     (tmp_path / "cas.txt").write_text(TASKS)
-    with pytest.raises(
-        ScenarioError, match=r"bots\.json has the suffix '\.json'; expected a \.csv or TAPTC agent"
-    ):
+    with pytest.raises(ScenarioError, match=r"bots\.json has the suffix '\.json'; expected a \.csv or TAPTC agent"):
         read_scenario(tmp_path / "cas.txt", tmp_path / "bots.json")
 
 
@@ -409,9 +407,7 @@ def mutated(data: bytes, rng: np.random.Generator) -> bytes:
 MUTATIONS = int(os.environ.get("MRTA_ZOO_MUTATIONS", "250"))
 
 
-@pytest.mark.parametrize(
-    "kind", ["cas.txt", "agent/cas.txt", "cas.csv", "cas.json", "plan.json", "reference.csv"]
-)
+@pytest.mark.parametrize("kind", ["cas.txt", "agent/cas.txt", "cas.csv", "cas.json", "plan.json", "reference.csv"])
 def test_damaged_files_are_read_or_refused(tmp_path: Path, kind: str) -> None:
     """Set MRTA_ZOO_MUTATIONS for more of them."""
     rng = np.random.default_rng(len(kind))

@@ -62,7 +62,10 @@ def test_permuting_the_tasks_permutes_the_probabilities(config: NetworkConfig) -
     network, (scenario,) = network_of(config), draw(1)
     order = np.random.default_rng(1).permutation(scenario.num_tasks)
     permuted = replace(
-        scenario, task_xy=scenario.task_xy[order], deadline=scenario.deadline[order], workload=scenario.workload[order]
+        scenario,
+        task_xy=scenario.task_xy[order],
+        deadline=scenario.deadline[order],
+        workload=scenario.workload[order],
     )
     before = log_probs(network, [scenario], steps=0)[0]
     after = log_probs(network, [permuted], steps=0)[0]
@@ -76,7 +79,10 @@ def test_permuting_the_peers_changes_nothing(config: NetworkConfig) -> None:
     scenario = UniformGenerator(tasks=12, robots=4)(rng)  # type: ignore[arg-type]
     order = [0, 3, 1, 2]
     permuted = replace(
-        scenario, robot_xy=scenario.robot_xy[order], capacity=scenario.capacity[order], speed=scenario.speed[order]
+        scenario,
+        robot_xy=scenario.robot_xy[order],
+        capacity=scenario.capacity[order],
+        speed=scenario.speed[order],
     )
     before, after = (log_probs(network, [each], steps=0) for each in (scenario, permuted))
     torch.testing.assert_close(after, before, rtol=1e-4, atol=1e-4)
@@ -95,9 +101,7 @@ def test_batch_mates_and_padding_change_nothing(config: NetworkConfig) -> None:
 
 @pytest.mark.parametrize("config", CONFIGS.values(), ids=CONFIGS)
 @pytest.mark.parametrize(("tasks", "robots"), [(1, 1), (2, 5), (150, 12)])
-def test_the_same_weights_serve_any_number_of_tasks_and_robots(
-    config: NetworkConfig, tasks: int, robots: int
-) -> None:
+def test_the_same_weights_serve_any_number_of_tasks_and_robots(config: NetworkConfig, tasks: int, robots: int) -> None:
     scenario = UniformGenerator(tasks=tasks, robots=robots)(np.random.default_rng(0))  # type: ignore[arg-type]
     rollout = roll_out(network_of(config), ScenarioBatch.of([scenario]), keep_plans=True)
     assert verify(scenario, rollout.plans[0]).completed == rollout.completed[0] > 0
@@ -232,7 +236,7 @@ def test_initial_weights_come_from_the_seed_alone() -> None:
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"encoder": "graph"}, r"encoder is 'graph'; expected 'capsule' or 'attention'"),
+        ({"encoder": "graph"}, r"encoder is 'graph'; expected one of capsule, attention"),
         ({"embedding": 30}, r"embedding is 30; expected a multiple of heads, 8"),
         ({"moments": 0}, r"moments is 0; expected a whole number >= 1"),
         ({"hops": -1}, r"hops is -1; expected a whole number >= 0"),
@@ -241,4 +245,4 @@ def test_initial_weights_come_from_the_seed_alone() -> None:
 )
 def test_bad_architectures_are_refused(change: dict[str, object], sentence: str) -> None:
     with pytest.raises(ConfigError, match=sentence):
-        NetworkConfig(**change)  # type: ignore[arg-type]
+        build_network(NetworkConfig(**change), "shared", 1, seed=0)  # type: ignore[arg-type]

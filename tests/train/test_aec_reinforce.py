@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from test_reinforce import Detour
+
 from mrta_zoo import mrta_v0
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.sharing import build_network
 from mrta_zoo.train.aec_reinforce import evaluate, train
-from test_reinforce import Detour
 
 
 def test_learns_to_pass_the_near_task_by() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -59,8 +60,11 @@ def test_resumed_run_ends_in_the_same_bits(tmp_path: Path, baseline: str, sharin
 
 
 def test_killed_run_resumes_to_the_same_bits(tmp_path: Path) -> None:
-    arguments = ("--preset=smoke --tasks 10 --updates 12 --epoch 1 --scenarios 4 --validation-scenarios 8 "
-                 "--embedding 32 --heads 4 --threads 1").split()  # fmt: skip
+    arguments = shlex.split(
+        "--preset smoke --tasks 10 --updates 12 --epoch 1 --scenarios 4 --validation-scenarios 8 "
+        "--embedding 32 --heads 4 --threads 1"
+    )
+
     train_command([*arguments, "--out", str(tmp_path / "straight")])
 
     killed = tmp_path / "killed"

@@ -19,7 +19,12 @@ def test_paper_preset_is_table_1() -> None:
     assert paper.scenarios * paper.samples == 500  # training frequency
     assert paper.validation_scenarios == 10_000
     assert paper.learning_rate == paper.final_learning_rate == 1e-4
-    assert (paper.network.hops, paper.network.moments, paper.network.layers, paper.network.heads) == (2, 3, 1, 8)
+    assert (paper.network.hops, paper.network.moments, paper.network.layers, paper.network.heads) == (
+        2,
+        3,
+        1,
+        8,
+    )
     assert (paper.tasks, paper.min_robots, paper.max_robots, paper.generator) == (100, 2, 7, "uniform")
 
 

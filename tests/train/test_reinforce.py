@@ -21,7 +21,15 @@ from mrta_zoo.train.reinforce import Reinforce, Validation, surrogate_loss
 
 SMALL = NetworkConfig(embedding=32, heads=4)
 TINY = TrainConfig(
-    network=SMALL, tasks=10, min_robots=1, max_robots=3, scenarios=4, samples=4, updates=4, epoch=2, validation_scenarios=8
+    network=SMALL,
+    tasks=10,
+    min_robots=1,
+    max_robots=3,
+    scenarios=4,
+    samples=4,
+    updates=4,
+    epoch=2,
+    validation_scenarios=8,
 )
 
 
@@ -36,7 +44,12 @@ def test_surrogate_gradient_is_that_of_decisions_taken_one_by_one(sharing: str, 
         [UniformGenerator(tasks=n, robots=(1, 4))(rng) for n in (3, 40, 12)]  # type: ignore[arg-type]
     )
     rollout = roll_out(
-        network, scenarios, samples=3, generator=torch.Generator().manual_seed(0), keep_segments=True, keep_plans=True
+        network,
+        scenarios,
+        samples=3,
+        generator=torch.Generator().manual_seed(0),
+        keep_segments=True,
+        keep_plans=True,
     )
     advantage = torch.randn(3, 3, generator=torch.Generator().manual_seed(1))
     surrogate_loss(network, scenarios, rollout, advantage).backward()

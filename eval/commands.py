@@ -1,0 +1,326 @@
+"""The commands ``mrta-zoo solve``, ``eval``, ``generate`` and ``demo``: their flags, and what they print."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeVar
+
+import numpy as np
+import tyro
+from tyro.conf import Positional, arg
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.eval.case_folder import CaseFormat, write_case_folder
+from mrta_zoo.eval.console import progress_bar, results_console
+from mrta_zoo.eval.destination import check_destination
+from mrta_zoo.eval.rows import Row, write_rows
+from mrta_zoo.eval.runner import Solved, evaluate, solve_and_score
+from mrta_zoo.eval.schedule import schedule_table, totals
+from mrta_zoo.eval.table import summary_tables
+from mrta_zoo.generators import make_generator
+from mrta_zoo.io import Case, PlanScore, ScheduledTask, read_cases, read_scenario, write_plan
+from mrta_zoo.policies.protocol import Solver
+from mrta_zoo.policies.registry import Decode, make_solver
+from mrta_zoo.rules import MaskRule
+from mrta_zoo.suite import builtin_suite
+
+BUILTIN = "builtin"
+
+
+def optional(metavar: str) -> Any:
+    """A flag whose default is to be absent; the text says what happens then, and "(default: None)" would not."""
+    return arg(metavar=metavar, help_behavior_hint="")
+
+
+Bounds = Annotated[str | None, optional("LOW-HIGH")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanningFlags:
+    """How methods plan. Each method uses what it can: heuristics only the mask rule (and random the seed)."""
+
+    decode: Annotated[Decode | None, optional("{greedy,sample}")] = None
+    """How learned methods choose: greedy takes the likeliest task each time; sample takes the best of several drawn
+    missions and the greedy one. By default sample if --budget is given, otherwise greedy."""
+    samples: int = 64
+    """Missions that sample draws in one go; with --budget it goes on drawing."""
+    budget: Annotated[float | None, optional("SECONDS")] = None
+    """Seconds a mission for methods that can search for longer. By default they stop by themselves."""
+    seed: int = 0
+    """Of everything drawn at random. The same seed gives the same plan."""
+    mask_rule: MaskRule = "feasible"
+    """What a robot may choose: feasible, what it can finish by the deadline; active, whose deadline has not passed;
+    unvisited, anything not yet taken."""
+
+    def solver(self, method: str) -> Solver:
+        """The method, made with these flags."""
+        return make_solver(
+            method,
+            seed=self.seed,
+            decode=self.decode,
+            samples=self.samples,
+            budget=self.budget,
+            mask_rule=self.mask_rule,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Solve:
+    """Plan one mission and print which robot does which task when.
+
+    For example:
+      mrta-zoo solve group1/r11a7i00.txt --plot plan.png
+      mrta-zoo solve tasks.txt --agents robots.txt --method nearest
+      mrta-zoo solve mission.json --budget 2 --out plan.json
+    """
+
+    taskfile: Annotated[Positional[Path], arg(metavar="TASKFILE")]
+    """The mission: a TAPTC task file, or a scenario in .json or .csv."""
+    agents: Annotated[Path | None, optional("AGENTFILE")] = None
+    """The robots: a TAPTC agent file, or .csv. Without it they are in TASKFILE or, for TAPTC, in agent/ beside it."""
+    method: Annotated[str, arg(metavar="METHOD")] = "capam"
+    """random, nearest, edf (earliest deadline), capam (trained, ships with the package), a policy's .safetensors
+    file, or the folder of a training run."""
+    out: Annotated[Path | None, optional("PLAN.json")] = None
+    """Write routes, schedule and score here, as JSON."""
+    plot: Annotated[Path | None, optional("PLAN.png")] = None
+    """Draw routes and schedule here; .png, .svg or .pdf."""
+    planning: Annotated[PlanningFlags, arg(name="")] = field(default_factory=PlanningFlags)
+
+
+def solve_command(argv: Sequence[str]) -> None:
+    """Run `mrta-zoo solve` with these arguments.
+
+    Raises:
+        MrtaError: if an option cannot be used, or a file cannot be read or written.
+    """
+    command = _parse(Solve, argv, "solve")
+    if command.out:
+        check_destination(command.out)
+    if command.plot:
+        from mrta_zoo.eval.plot_plan import check_picture_format, save_plan_picture
+
+        check_destination(command.plot)
+        check_picture_format(command.plot)
+    scenario = read_scenario(command.taskfile, command.agents)
+    solved = solve_and_score(command.planning.solver(command.method), scenario)
+    if command.out:
+        _write_solved(solved, command.out)
+    if command.plot:
+        save_plan_picture(scenario, solved.plan, command.plot, solved.score)
+    console = results_console()
+    console.print(
+        f"{scenario.name}: {scenario.num_tasks} tasks, {scenario.num_robots} robots, planned by {command.method} "
+        f"in {solved.seconds:.3f} s",
+        soft_wrap=True,
+    )
+    console.print(schedule_table(scenario, solved.score))
+    console.print(totals(solved.score), soft_wrap=True)
+    for path, what in ((command.out, "plan"), (command.plot, "picture")):
+        if path:
+            console.print(f"{what} written to {path}", soft_wrap=True)
+
+
+def _write_solved(solved: Solved, path: Path) -> None:
+    score = solved.score
+    write_plan(
+        solved.plan,
+        path,
+        schedule=[
+            [ScheduledTask(visit.task, visit.arrival, visit.finish, visit.deadline, visit.completed) for visit in visits]
+            for visits in score.schedule
+        ],
+        score=PlanScore(
+            score.completed, score.tasks, score.completion, score.cost, score.distance, score.makespan
+        ),
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Eval:
+    """Compare methods on the same cases, every plan scored by the independent verifier.
+
+    Prints means by number of tasks and robots, and with --out writes a row for each method and case. Where the folder
+    holds a reference.csv (columns case,tasks,robots and one for each method with the tasks it completed), the share
+    of the best known plan is printed, too. The first plan of a trained network is not timed.
+
+    For example:
+      mrta-zoo eval --cases builtin --methods capam,nearest --out rows.csv
+      mrta-zoo eval --cases taptc/n100 --methods capam,runs/mine --decode sample
+    """
+
+    cases: Annotated[str, arg(metavar="DIR|builtin")]
+    """A folder of cases (TAPTC: group*/NAME.txt with agent/NAME.txt or agent/a{n}i0{i}.txt; or .json or .csv
+    scenarios), or builtin: 96 drawn cases with 100 tasks and 2 to 7 robots."""
+    methods: Annotated[str, arg(metavar="METHOD,METHOD,…")] = "random,nearest,edf,capam"
+    """What to compare: random, nearest, edf, capam, .safetensors files and folders of training runs."""
+    out: Annotated[Path | None, optional("ROWS.csv")] = None
+    """Write the rows here, once all are known: case, method, tasks, robots, completed, completion (0 to 1), cost,
+    distance, makespan, seconds."""
+    planning: Annotated[PlanningFlags, arg(name="")] = field(default_factory=PlanningFlags)
+
+
+def eval_command(argv: Sequence[str]) -> None:
+    """Run `mrta-zoo eval` with these arguments.
+
+    Raises:
+        MrtaError: if an option cannot be used, a file cannot be read or written, or a method fails.
+    """
+    command = _parse(Eval, argv, "eval")
+    if command.out:
+        check_destination(command.out)
+    solvers = {method: command.planning.solver(method) for method in _names(command.methods)}
+    cases = builtin_cases() if command.cases == BUILTIN else read_cases(command.cases)
+    rows = run_with_progress(cases, solvers)
+    if command.out:
+        write_rows(rows, command.out)
+    console = results_console()
+    best_known = {case.name: case.best_known for case in cases if case.best_known is not None}
+    for table in summary_tables(rows, best_known):
+        console.print(table)
+    if command.out:
+        console.print(f"{len(rows)} rows written to {command.out}", soft_wrap=True)
+
+
+def builtin_cases() -> list[Case]:
+    """The built-in suite."""
+    return [Case(scenario.name, scenario) for scenario in builtin_suite()]
+
+
+def run_with_progress(cases: Sequence[Case], solvers: dict[str, Solver]) -> list[Row]:
+    """Every method on every case, with a progress bar if there is a terminal."""
+    rows = []
+    with progress_bar() as progress:
+        bar = progress.add_task(next(iter(solvers)), total=len(cases) * len(solvers))
+        for row in evaluate(cases, solvers):
+            rows.append(row)
+            progress.update(bar, advance=1, description=row.method)
+    return rows
+
+
+def _names(methods: str) -> list[str]:
+    names = [name.strip() for name in methods.split(",") if name.strip()]
+    if not names:
+        raise ConfigError(f"methods is {methods!r}; expected names separated by commas, such as capam,nearest")
+    for name in names:
+        if names.count(name) > 1:
+            raise ConfigError(f"method {name} is named twice; expected each once")
+    return names
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Generate:
+    """Draw random scenarios into a new folder that `mrta-zoo eval --cases` reads.
+
+    Bounds are LOW-HIGH, both included, or one number. Those not given are the generator's own.
+
+    For example:
+      mrta-zoo generate --count 20 --robots 2-7 --out cases
+      mrta-zoo generate --generator uniform --tasks 50-200 --deadline 50-600 --format json --out cases
+    """
+
+    out: Annotated[Path, arg(metavar="DIR")]
+    """Folder to write; new or empty."""
+    generator: Literal["taptc", "uniform"] = "taptc"
+    """taptc: like the published TAPTC cases; uniform: everything uniform within bounds, as in the paper (§IV-A)."""
+    count: int = 10
+    """Number of scenarios."""
+    seed: int = 0
+    """The same seed and bounds give the same scenarios; the first ones stay the same with a higher --count."""
+    format: CaseFormat = "taptc"
+    """Of the files. TAPTC files hold no speeds."""
+    tasks: Bounds = None
+    """Number of tasks; 100 by default."""
+    robots: Bounds = None
+    """Number of robots; 2-7 by default."""
+    map: Annotated[str | None, optional("WIDTH-HEIGHT")] = None
+    """Sides of the map in distance units; 100 by default."""
+    workload: Bounds = None
+    """Work at a task, in work units; 20 by default, 10-30 for uniform. One number for taptc."""
+    capacity: Annotated[str | None, optional("LOW-HIGH|half|random")] = None
+    """Work a robot does per time unit: for uniform bounds, 1-3 by default; for taptc half (the first half of the
+    robots has 2, the others 1; the default) or random (1 or 2)."""
+    deadline: Bounds = None
+    """Only uniform: deadlines in time units; 50-600 by default."""
+    speed: Bounds = None
+    """Only uniform: distance a robot travels per time unit; 1 by default."""
+    group: Annotated[str | None, optional("{tight,slack,mixed}")] = None
+    """Only taptc: latest deadline 250-300 (tight), twice that (slack), or either (mixed, the default)."""
+
+
+def generate_command(argv: Sequence[str]) -> None:
+    """Run `mrta-zoo generate` with these arguments.
+
+    Raises:
+        MrtaError: if an option cannot be used, or the folder cannot be written.
+    """
+    command = _parse(Generate, argv, "generate")
+    if command.count < 1:
+        raise ConfigError(f"count is {command.count}; expected a whole number >= 1")
+    if command.seed < 0:
+        raise ConfigError(f"seed is {command.seed}; expected a whole number >= 0")
+    given: dict[str, Any] = {"group": command.group, "map_size": _bounds(command.map)}
+    for name in ("tasks", "robots", "workload", "capacity", "deadline", "speed"):
+        given[name] = _bounds(getattr(command, name))
+    fields = {name: value for name, value in given.items() if value is not None}
+    generator = make_generator(command.generator, **fields)
+    digits = len(str(command.count - 1))
+    # A stream of its own for each scenario, so that none depends on how many there are.
+    scenarios = (
+        generator(np.random.default_rng((command.seed, index)), f"{command.generator}{index:0{digits}d}")
+        for index in range(command.count)
+    )
+    write_case_folder(scenarios, command.out, command.format)
+    results_console().print(f"{command.count} scenarios written to {command.out}", soft_wrap=True)
+
+
+def _bounds(text: str | None) -> tuple[float, float] | float | str | None:
+    """Numbers written as ``2`` or ``2-7``; anything else as it is, for the generator to accept or refuse."""
+    if text is None:
+        return None
+    number = r"([0-9]*\.?[0-9]+)"
+    if pair := re.fullmatch(f"{number}-{number}", text):
+        return float(pair[1]), float(pair[2])
+    return float(text) if re.fullmatch(number, text) else text
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Demo:
+    """See it all at work in a few minutes.
+
+    Robots take turns in the environment under one shared, trained policy; methods are compared on the built-in suite;
+    a small policy is trained from scratch; a plan is drawn.
+
+    For example:
+      mrta-zoo demo --out demo
+    """
+
+    out: Annotated[Path, arg(metavar="DIR")] = Path("mrta_zoo_demo")
+    """Folder for the table's rows, the training run and the picture; made if it does not exist."""
+    policy: Annotated[str, arg(metavar="POLICY")] = "capam"
+    """The trained policy to show: the one that ships with the package, a .safetensors file, or the folder of a run."""
+
+
+def demo_command(argv: Sequence[str]) -> None:
+    """Run `mrta-zoo demo` with these arguments.
+
+    Raises:
+        MrtaError: if an option cannot be used, or something is not installed.
+    """
+    command = _parse(Demo, argv, "demo")
+    from mrta_zoo.eval.demo import run_demo
+
+    run_demo(command.out, command.policy)
+
+
+CommandClass = TypeVar("CommandClass")
+
+
+def _parse(of: type[CommandClass], argv: Sequence[str], name: str) -> CommandClass:
+    """The command with its flags. Exits with a message and code 2 if they cannot be understood."""
+    sys.stdout.flush()
+    return tyro.cli(of, args=list(argv), prog=f"mrta-zoo {name}", config=(tyro.conf.OmitArgPrefixes,))

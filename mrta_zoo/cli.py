@@ -1,0 +1,124 @@
+"""The command line, ``mrta-zoo``: which command, and what becomes of errors. Commands are in `eval.commands`.
+
+Exit codes: 0, 2 for what the user can put right (one sentence on standard error, no traceback), 130 after Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Sequence
+
+from mrta_zoo import __version__
+from mrta_zoo.errors import MrtaError
+
+Command = Callable[[list[str]], None]
+"""Runs a command with the arguments that follow its name."""
+
+USER_ERROR, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
+
+
+# Imports are inside, so that `mrta-zoo --help` is instant and heuristics need no torch.
+def _solve(argv: list[str]) -> None:
+    from mrta_zoo.eval.commands import solve_command
+
+    solve_command(argv)
+
+
+def _eval(argv: list[str]) -> None:
+    from mrta_zoo.eval.commands import eval_command
+
+    eval_command(argv)
+
+
+def _generate(argv: list[str]) -> None:
+    from mrta_zoo.eval.commands import generate_command
+
+    generate_command(argv)
+
+
+def _train(argv: list[str]) -> None:
+    from mrta_zoo.policies.registry import require_torch
+
+    require_torch("training")
+    from mrta_zoo.train.cli import train_command
+
+    train_command(argv)
+
+
+def _demo(argv: list[str]) -> None:
+    from mrta_zoo.eval.commands import demo_command
+
+    demo_command(argv)
+
+
+COMMANDS: dict[str, tuple[str, Command]] = {
+    "solve": ("plan one mission: who does which task when", _solve),
+    "eval": ("compare methods on a folder of cases, or on the built-in suite", _eval),
+    "generate": ("draw random scenarios into a folder of cases", _generate),
+    "train": ("train a policy by REINFORCE", _train),
+    "demo": ("see it all at work, in a few minutes", _demo),
+}
+"""Each command with what `mrta-zoo --help` says of it. To add one, give it an entry."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line and return its exit code.
+
+    Args:
+        argv: the arguments; by default those of the process.
+    """
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):  # a name that the terminal's encoding lacks must not end in a traceback
+            stream.reconfigure(errors="replace")
+    try:
+        return _dispatch(arguments)
+    except MrtaError as error:
+        print(f"error: {_one_line(str(error))}", file=sys.stderr)
+        return USER_ERROR
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError:  # the reader, such as `head`, has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return BROKEN_PIPE
+
+
+def _dispatch(arguments: list[str]) -> int:
+    if not arguments:
+        print(_help(), file=sys.stderr)
+        return USER_ERROR
+    name, *rest = arguments
+    if name in ("-h", "--help"):
+        print(_help())
+    elif name == "--version":
+        print(f"mrta-zoo {__version__}")
+    elif name in COMMANDS:
+        COMMANDS[name][1](rest)
+        sys.stdout.flush()  # a reader that has gone away shows here, not at exit
+    else:
+        kind = "option" if name.startswith("-") else "command"
+        print(f"error: there is no {kind} {name!r}; expected one of {', '.join(COMMANDS)}", file=sys.stderr)
+        return USER_ERROR
+    return 0
+
+
+def _help() -> str:
+    width = max(map(len, COMMANDS))
+    commands = "\n".join(f"  {name:<{width}}  {summary}" for name, (summary, _) in COMMANDS.items())
+    return (
+        "usage: mrta-zoo COMMAND [options]\n\n"
+        "Multi-robot task allocation: robots share tasks that have places, workloads and deadlines.\n\n"
+        f"commands:\n{commands}\n\n"
+        "options:\n"
+        "  --version   print the version\n"
+        "  -h, --help  print this; `mrta-zoo COMMAND --help` explains a command\n\n"
+        "example:\n"
+        "  mrta-zoo generate --count 3 --out cases\n"
+        "  mrta-zoo solve cases/group1/taptc0.txt --method nearest --plot plan.png"
+    )
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())

@@ -1,0 +1,32 @@
+"""The encoders that a configuration can name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from torch import nn
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.policies.capam.attention_encoder import AttentionEncoder
+from mrta_zoo.policies.capam.capsule_encoder import CapsuleEncoder
+from mrta_zoo.policies.capam.config import NetworkConfig
+
+EncoderBuilder = Callable[[int, NetworkConfig], nn.Module]
+"""Builds, for a number of node features, a module ``(nodes, exists, graph) -> embeddings``; see `CapsuleEncoder`."""
+
+ENCODERS: dict[str, EncoderBuilder] = {
+    "capsule": lambda features, c: CapsuleEncoder(features, c.embedding, c.layers, c.hops, c.moments),
+    "attention": lambda features, c: AttentionEncoder(features, c.embedding, c.layers, c.heads),
+}
+"""Encoders by name. To use one of your own, put it here under a new name and name it in `NetworkConfig.encoder`."""
+
+
+def build_encoder(features: int, config: NetworkConfig) -> nn.Module:
+    """The encoder that `config` names, for nodes of so many features.
+
+    Raises:
+        ConfigError: if there is none of that name.
+    """
+    if config.encoder not in ENCODERS:
+        raise ConfigError(f"encoder is {config.encoder!r}; expected one of {', '.join(ENCODERS)}")
+    return ENCODERS[config.encoder](features, config)
