@@ -21,6 +21,7 @@ from mrta_zoo.eval.rows import Row, write_rows
 from mrta_zoo.eval.runner import Solved, evaluate, solve_and_score
 from mrta_zoo.eval.schedule import schedule_table, totals
 from mrta_zoo.eval.table import summary_tables
+from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.generators import make_generator
 from mrta_zoo.io import Case, PlanScore, ScheduledTask, read_cases, read_scenario, write_plan
 from mrta_zoo.policies.protocol import Solver
@@ -55,6 +56,8 @@ class PlanningFlags:
     mask_rule: MaskRule = "feasible"
     """What a robot may choose: feasible, what it can finish by the deadline; active, whose deadline has not passed;
     unvisited, anything not yet taken."""
+    threads: int = 1
+    """CPU threads for learned methods. One is as fast as several for single missions, and timings compare."""
 
     def solver(self, method: str) -> Solver:
         """The method, made with these flags."""
@@ -107,7 +110,9 @@ def solve_command(argv: Sequence[str]) -> None:
         check_destination(command.plot)
         check_picture_format(command.plot)
     scenario = read_scenario(command.taskfile, command.agents)
-    solved = solve_and_score(command.planning.solver(command.method), scenario)
+    solver = command.planning.solver(command.method)
+    with cpu_threads(command.planning.threads):
+        solved = solve_and_score(solver, scenario)
     if command.out:
         _write_solved(solved, command.out)
     if command.plot:
@@ -175,7 +180,8 @@ def eval_command(argv: Sequence[str]) -> None:
         check_destination(command.out)
     solvers = {method: command.planning.solver(method) for method in _names(command.methods)}
     cases = builtin_cases() if command.cases == BUILTIN else read_cases(command.cases)
-    rows = run_with_progress(cases, solvers)
+    with cpu_threads(command.planning.threads):
+        rows = run_with_progress(cases, solvers)
     if command.out:
         write_rows(rows, command.out)
     console = results_console()

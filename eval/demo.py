@@ -19,6 +19,7 @@ from mrta_zoo.eval.rows import write_rows
 from mrta_zoo.eval.runner import solve_and_score
 from mrta_zoo.eval.schedule import totals
 from mrta_zoo.eval.table import summary_tables
+from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.mission import Mission
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.policies.registry import METHODS, load_learned, make_solver, require_torch
@@ -49,10 +50,12 @@ def run_demo(folder: Path, policy_name: str = "capam") -> None:
     scenarios = {case.name: case.scenario for case in cases}
 
     _heading(console, "1. Robots take turns in the environment, all under one shared policy")
-    show_steps(console, policy, scenarios[STEPPED], STEPS_SHOWN)
+    with cpu_threads(1):
+        show_steps(console, policy, scenarios[STEPPED], STEPS_SHOWN)
 
     _heading(console, f"2. Methods compared on the built-in suite, {len(cases)} cases, scored by the verifier")
-    rows = run_with_progress(cases, {name: make_solver(name) for name in (*METHODS, policy_name)})
+    with cpu_threads(1):
+        rows = run_with_progress(cases, {name: make_solver(name) for name in (*METHODS, policy_name)})
     write_rows(rows, folder / "rows.csv")
     for table in summary_tables(rows):
         console.print(table)
@@ -62,7 +65,8 @@ def run_demo(folder: Path, policy_name: str = "capam") -> None:
     show_training(console, _new_folder(folder / "training"))
 
     _heading(console, "4. A plan as a picture")
-    solved = solve_and_score(make_solver(policy_name), scenarios[DRAWN])
+    with cpu_threads(1):
+        solved = solve_and_score(make_solver(policy_name), scenarios[DRAWN])
     save_plan_picture(scenarios[DRAWN], solved.plan, folder / "plan.png", solved.score)
     console.print(f"{DRAWN} planned by {policy_name} in {solved.seconds:.3f} s:", soft_wrap=True)
     console.print(totals(solved.score), soft_wrap=True)

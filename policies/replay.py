@@ -18,7 +18,7 @@ class ReplayPolicy:
     are two ways to replay:
 
     - exactly (``then=None``): either is an error. A plan of a policy that ran under the same mask rule always replays
-      exactly.
+      exactly. The mission ends when no robot has a choice left, be it before the plan does: compare what comes out.
     - as a guide (``then=policy``): a task that the robot may not take any more is passed over, and a robot at the end
       of its route goes on by `then`. Under "feasible" this completes whatever the plan completes, and maybe more:
       what is passed over was completed by another robot or would have been late, and by the triangle inequality the

@@ -15,7 +15,7 @@ from typing import Any, Literal, TypeVar, get_type_hints
 import msgspec
 import torch
 from safetensors import SafetensorError
-from safetensors.torch import load_file, save_file
+from safetensors.torch import load_file, save
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.config import NetworkConfig
@@ -92,7 +92,8 @@ def pretrained_path(name: str) -> Path:
 def write_tensors(path: Path, tensors: dict[str, torch.Tensor]) -> None:
     """Write tensors to a safetensors file; readers see the old file or the new one, never half of it."""
     partial = path.with_name(path.name + ".partial")
-    save_file({name: tensor.detach().cpu().contiguous() for name, tensor in tensors.items()}, partial)
+    # Not `save_file`, which makes files that only their owner can read.
+    partial.write_bytes(save({name: tensor.detach().cpu().contiguous() for name, tensor in tensors.items()}))
     os.replace(partial, path)
 
 

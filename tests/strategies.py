@@ -159,7 +159,7 @@ def _floats(source: Source, n: int, m: int) -> Scenario:
             exact = finish(robot, task_xy[before], ready, task)
         if tie == "missed":
             exact = math.nextafter(exact, 0.0)
-        if exact > 0:
+        if exact >= 1e-12:
             deadline[task] = exact
     return Scenario(
         task_xy=np.array(task_xy),

@@ -128,9 +128,9 @@ def test_a_pickled_scenario_is_still_read_only() -> None:
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"deadline": [1e13, 2]}, "task 0 has deadline 1e+13; expected a number > 0, from 1e-12 to 1e+12"),
+        ({"deadline": [1e13, 2, 3]}, "task 0 has deadline 1e+13; expected a number > 0, from 1e-12 to 1e+12"),
         ({"speed": [1, 1e-13]}, "robot 1 has speed 1e-13; expected a number > 0, from 1e-12 to 1e+12"),
-        ({"workload": [0, 1e300]}, "task 1 has workload 1e+300; expected a number from 0 to 1e+12"),
+        ({"workload": [0, 1e300, 1]}, "task 1 has workload 1e+300; expected a number from 0 to 1e+12"),
     ],
 )
 def test_numbers_that_would_overflow_or_vanish_are_refused(changes: dict[str, Any], sentence: str) -> None:

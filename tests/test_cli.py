@@ -1,0 +1,294 @@
+"""The command line: what it prints, writes, and says when something is wrong."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mrta_zoo import __version__
+from mrta_zoo.cli import COMMANDS, main
+from mrta_zoo.generators import TaptcGenerator
+from mrta_zoo.io import read_cases, read_plan, read_scenario, write_scenario
+from mrta_zoo.scenario import Scenario
+from mrta_zoo.verify import verify
+from real_cases import REAL, needs_real_cases
+
+Captured = pytest.CaptureFixture[str]
+
+
+@pytest.fixture(scope="module")
+def cases(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of three small TAPTC cases."""
+    folder = tmp_path_factory.mktemp("data") / "cases"
+    assert main(["generate", "--count", "3", "--tasks", "12", "--robots", "2-3", "--out", str(folder)]) == 0
+    return folder
+
+
+def fails(capsys: Captured, arguments: list[str]) -> str:
+    """Run a command that ends with code 2 and one line on standard error; that line."""
+    capsys.readouterr()
+    assert main(arguments) == 2
+    output = capsys.readouterr()
+    assert output.out == ""
+    assert output.err.startswith("error: ")
+    assert output.err.count("\n") == 1
+    return output.err
+
+
+def refused(capsys: Captured, arguments: list[str]) -> str:
+    """Run a command whose flags are not understood; what standard error says."""
+    capsys.readouterr()
+    with pytest.raises(SystemExit) as exit_:
+        main(arguments)
+    assert exit_.value.code == 2
+    output = capsys.readouterr()
+    assert output.out == ""
+    assert "Traceback" not in output.err
+    return output.err
+
+
+def test_version_and_help(capsys: Captured) -> None:
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"mrta-zoo {__version__}\n"
+    assert main(["--help"]) == 0
+    text = capsys.readouterr().out
+    assert all(f"  {name} " in text for name in COMMANDS)
+    assert main([]) == 2
+    assert capsys.readouterr().err == text
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_explains_itself(command: str, capsys: Captured) -> None:
+    if command == "train":
+        pytest.importorskip("torch")
+    with pytest.raises(SystemExit) as exit_:
+        main([command, "--help"])
+    assert exit_.value.code == 0
+    text = capsys.readouterr().out
+    assert text.startswith(f"usage: mrta-zoo {command} ")
+    assert f"mrta-zoo {command} " in text.split("\n", 1)[1], "an example"
+    assert command == "train" or "None" not in text
+
+
+def test_solve_prints_and_writes_the_verified_plan(cases: Path, tmp_path: Path, capsys: Captured) -> None:
+    task_file = next((cases / "group1").glob("*.txt"))
+    out, picture = tmp_path / "plan.json", tmp_path / "plan.png"
+    arguments = ["solve", str(task_file), "--method", "nearest", "--out", str(out)]
+    pytest.importorskip("matplotlib")
+    arguments += ["--plot", str(picture)]
+    assert main(arguments) == 0
+    output = capsys.readouterr()
+    scenario, plan = read_scenario(task_file), read_plan(out)
+    score = verify(scenario, plan)
+    for robot, visits in enumerate(score.schedule):
+        for visit in visits:
+            line = f"robot {robot} {visit.task} {visit.arrival:.2f} {visit.finish:.2f} {visit.deadline:g}"
+            assert line.split() in [each.split() for each in output.out.splitlines()]
+    assert f"completed {score.completed} of 12 tasks" in output.out
+    document = json.loads(out.read_text())
+    assert document["score"]["cost"] == score.cost
+    assert document["schedule"][0][0]["finish"] == score.schedule[0][0].finish
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert output.err == ""
+
+
+def test_solve_reads_json_csv_and_named_agents(tmp_path: Path, capsys: Captured) -> None:
+    scenario = TaptcGenerator(tasks=(9, 9), robots=(2, 2))(np.random.default_rng(2), "mission")
+    for suffix in ("json", "csv", "txt"):
+        write_scenario(scenario, tmp_path / f"mission.{suffix}")
+    robots = tmp_path / "robots.txt"
+    (tmp_path / "agent" / "mission.txt").rename(robots)
+    totals = []
+    for arguments in (["mission.json"], ["mission.csv"], ["mission.txt", "--agents", str(robots)]):
+        assert main(["solve", str(tmp_path / arguments[0]), *arguments[1:], "--method", "edf"]) == 0
+        totals.append(capsys.readouterr().out.splitlines()[-2:])
+    assert totals[0] == totals[1] == totals[2]
+
+
+def test_solve_under_another_mask_rule_takes_everything(cases: Path, capsys: Captured) -> None:
+    task_file = next((cases / "group1").glob("*.txt"))
+    assert main(["solve", str(task_file), "--method", "nearest", "--mask-rule", "unvisited"]) == 0
+    assert " 0 not taken" in capsys.readouterr().out
+
+
+def test_eval_prints_tables_and_writes_rows(cases: Path, tmp_path: Path, capsys: Captured) -> None:
+    out = tmp_path / "rows.csv"
+    assert main(["eval", "--cases", str(cases), "--methods", "random, nearest", "--out", str(out)]) == 0
+    output = capsys.readouterr()
+    rows = list(csv.DictReader(out.open(newline="")))
+    names = [case.name for case in read_cases(cases)]
+    assert [(row["method"], row["case"]) for row in rows] == [(m, name) for m in ("random", "nearest") for name in names]
+    assert "Tasks completed, mean %" in output.out
+    assert "best known" not in output.out
+    assert output.err == ""  # no progress bar where there is no terminal
+
+
+def test_eval_uses_the_reference(cases: Path, capsys: Captured) -> None:
+    reference = cases / "reference.csv"
+    lines = [f"{c.name},{c.scenario.num_tasks},{c.scenario.num_robots},1,2" for c in read_cases(cases)]
+    reference.write_text("\n".join(["case,tasks,robots,nearest,best", *lines]))
+    try:
+        assert main(["eval", "--cases", str(cases), "--methods", "nearest"]) == 0
+        assert "Share of the best known plan's tasks, mean %" in capsys.readouterr().out
+    finally:
+        reference.unlink()
+
+
+def test_eval_on_the_builtin_suite(tmp_path: Path, capsys: Captured) -> None:
+    out = tmp_path / "rows.csv"
+    assert main(["eval", "--cases", "builtin", "--methods", "nearest", "--out", str(out)]) == 0
+    assert len(out.read_text().splitlines()) == 97
+    assert "96" in capsys.readouterr().out
+
+
+@needs_real_cases
+def test_eval_on_real_cases(tmp_path: Path, capsys: Captured) -> None:
+    assert main(["eval", "--cases", str(REAL / "n100"), "--methods", "nearest"]) == 0
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    # Of the `nearest` column of reference.csv the mean is 54.6 %.
+    assert ["all", "32", "54.6"] in lines
+
+
+def test_generate_is_fixed_by_its_seed(tmp_path: Path) -> None:
+    def drawn(name: str, *flags: str) -> list[Scenario]:
+        main(["generate", "--generator", "uniform", "--format", "json", "--tasks", "3-9", "--out", str(tmp_path / name), *flags])
+        return [case.scenario for case in read_cases(tmp_path / name)]
+
+    three = drawn("a", "--count", "3", "--seed", "5")
+    assert three == drawn("b", "--count", "3", "--seed", "5")
+    assert three == drawn("c", "--count", "9", "--seed", "5")[:3]
+    assert three != drawn("d", "--count", "3", "--seed", "6")
+    assert len({scenario.num_tasks for scenario in drawn("e", "--count", "12")}) > 1
+
+
+def test_generate_takes_bounds(tmp_path: Path) -> None:
+    flags = "--generator uniform --format json --robots 3 --map 50-20 --speed 0.5-1.5 --capacity 2 --deadline 10-12.5"
+    assert main(["generate", "--out", str(tmp_path / "cases"), "--count", "4", *flags.split()]) == 0
+    for case in read_cases(tmp_path / "cases"):
+        scenario = case.scenario
+        assert (scenario.num_tasks, scenario.num_robots, scenario.map_size) == (100, 3, (50, 20))
+        assert 0.5 <= scenario.speed.min() < scenario.speed.max() <= 1.5
+        assert (scenario.capacity == 2).all()
+        assert 10 <= scenario.deadline.min() < scenario.deadline.max() <= 12.5
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["fly"], "there is no command 'fly'; expected one of solve, eval"),
+        (["--fly"], "there is no option '--fly'"),
+        (["solve", "absent.txt", "--method", "nearest"], "absent.txt"),
+        (["solve", "CASE", "--method", "fastest"], "there is no method 'fastest'; expected one of random"),
+        (["solve", "CASE", "--method", "nearest", "--budget", "-1"], "budget is -1"),
+        (["solve", "CASE", "--method", "nearest", "--seed", "-1"], "seed is -1"),
+        (["solve", "CASE", "--method", "nearest", "--samples", "0"], "samples is 0"),
+        (["solve", "CASE", "--method", "nearest", "--threads", "0"], "threads is 0"),
+        (["solve", "CASE", "--method", "nearest", "--agents", "absent.txt"], "absent.txt: there is no such file"),
+        (["solve", "CASE", "--method", "nearest", "--out", "absent/plan.json"], "absent does not exist"),
+        (["solve", "CASE", "--method", "nearest", "--out", "."], "is a folder"),
+        (["solve", "CASE", "--method", "nearest", "--plot", "plan.doc"], "has the suffix '.doc'"),
+        (["solve", "CASE", "--method", "nearest", "--plot", "absent/plan.png"], "absent does not exist"),
+        (["solve", "EMPTY", "--method", "nearest"], "is empty"),
+        (["eval", "--cases", "absent", "--methods", "nearest"], "absent does not exist"),
+        (["eval", "--cases", "HOLLOW", "--methods", "nearest"], "holds no cases"),
+        (["eval", "--cases", "builtin", "--methods", "nearest,fastest"], "there is no method 'fastest'"),
+        (["eval", "--cases", "builtin", "--methods", ","], "expected names separated by commas"),
+        (["eval", "--cases", "builtin", "--methods", "edf,edf"], "edf is named twice"),
+        (["eval", "--cases", "builtin", "--methods", "edf", "--out", "CASE/rows.csv"], "is not a folder"),
+        (["generate", "--out", "DATA"], "is not empty"),
+        (["generate", "--out", "new", "--count", "0"], "count is 0"),
+        (["generate", "--out", "new", "--seed", "-3"], "seed is -3"),
+        (["generate", "--out", "new", "--robots", "7-2"], "robots is (7.0, 2.0)"),
+        (["generate", "--out", "new", "--tasks", "many"], "tasks is 'many'"),
+        (["generate", "--out", "new", "--deadline", "50-60"], "has no field 'deadline'"),
+        (["generate", "--out", "new", "--generator", "uniform", "--speed", "2"], "TAPTC files hold no speeds"),
+        (["demo", "--policy", "fastest"], "there is no policy 'fastest'"),
+    ],
+)
+def test_mistakes_get_a_sentence(
+    arguments: list[str], complaint: str, cases: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    if arguments[0] == "demo":
+        pytest.importorskip("torch")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "EMPTY").write_text("")
+    (tmp_path / "HOLLOW").mkdir()
+    task_file = str(next((cases / "group1").glob("*.txt")))
+    written = [word.replace("CASE", task_file).replace("DATA", str(cases)) for word in arguments]
+    assert complaint in fails(capsys, written)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["EMPTY", "HOLLOW"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "complaint"),
+    [
+        (["solve"], "TASKFILE"),
+        (["solve", "x.txt", "--decode", "beam"], "--decode"),
+        (["solve", "x.txt", "--budget", "long"], "--budget"),
+        (["solve", "x.txt", "--mask-rule", "any"], "--mask-rule"),
+        (["solve", "x.txt", "--metod", "nearest"], "--method"),
+        (["eval", "--methods", "nearest"], "--cases"),
+        (["generate"], "--out"),
+        (["generate", "--out", "x", "--format", "xml"], "--format"),
+        (["demo", "now"], "now"),
+    ],
+)
+def test_misspelt_flags_are_refused(arguments: list[str], complaint: str, capsys: Captured) -> None:
+    assert complaint in refused(capsys, arguments)
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write anywhere")
+def test_a_folder_without_permission(cases: Path, tmp_path: Path, capsys: Captured) -> None:
+    tmp_path.chmod(0o500)
+    arguments = ["eval", "--cases", str(cases), "--methods", "nearest", "--out", str(tmp_path / "rows.csv")]
+    assert "no permission" in fails(capsys, arguments)
+
+
+def test_an_interrupted_evaluation_writes_nothing(
+    cases: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    from mrta_zoo.eval import commands
+
+    def interrupted(*args: object) -> object:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(commands, "evaluate", interrupted)
+    arguments = ["eval", "--cases", str(cases), "--methods", "nearest", "--out", str(tmp_path / "rows.csv")]
+    assert main(arguments) == 130
+    assert capsys.readouterr().err == "interrupted\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_as_a_module_in_a_pipe(cases: Path) -> None:
+    task_file = next((cases / "group1").glob("*.txt"))
+    command = [sys.executable, "-m", "mrta_zoo", "solve", str(task_file), "--method", "nearest"]
+    result = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60)
+    assert "\x1b" not in result.stdout
+    assert "completed" in result.stdout
+    assert result.stderr == ""
+
+
+def test_ctrl_c_ends_with_130(tmp_path: Path) -> None:
+    folder = tmp_path / "cases"
+    command = [sys.executable, "-m", "mrta_zoo", "generate", "--count", "1000000", "--out", str(folder)]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        while not any(tmp_path.rglob("*.txt")) and process.poll() is None:
+            pass
+        process.send_signal(signal.SIGINT)
+        _, complaint = process.communicate(timeout=60)
+    assert (process.returncode, complaint) == (130, "interrupted\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_command_line_starts_light() -> None:
+    code = "import sys, mrta_zoo.cli; print(*[m for m in ('torch', 'rich', 'tyro', 'pettingzoo') if m in sys.modules])"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+    assert loaded.stdout.split() == []
