@@ -13,15 +13,17 @@ demo: $(INSTALLED)
 test: $(INSTALLED)
 	$(BIN)/python -m pytest -n 2
 
-# mypy sees the installed package, in which policies/, train/ and eval/ lie inside mrta_zoo/.
+# mypy must see the package as it is installed, with policies/, train/ and eval/ inside mrta_zoo/.
 lint: $(INSTALLED)
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/mypy -p mrta_zoo
+	rm -rf build/lib build/typed
+	$(BIN)/pip install --quiet --no-deps --target build/typed .
+	cd build/typed && $(CURDIR)/$(BIN)/mypy --config-file $(CURDIR)/pyproject.toml -p mrta_zoo
 
 # A wheel, installed in an empty environment away from the checkout, runs the demo.
 wheel-test: $(INSTALLED)
-	rm -rf dist build/wheel-test
+	rm -rf dist build/lib build/wheel-test
 	$(BIN)/python -m build --wheel --outdir dist
 	$(PYTHON) -m venv build/wheel-test
 	build/wheel-test/bin/pip install --quiet --constraint constraints.txt "$$(ls dist/*.whl)[all]"
@@ -30,12 +32,10 @@ wheel-test: $(INSTALLED)
 benchmark: $(INSTALLED)
 	$(BIN)/python -m mrta_zoo.eval.benchmarks.aec_turns
 
-# Strict editable mode links every file into one package folder, which type checkers understand; new files need
-# `make clean` (or touching pyproject.toml) to be linked.
 $(INSTALLED): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --upgrade pip
-	$(BIN)/pip install --quiet --constraint constraints.txt --config-settings editable_mode=strict --editable ".[dev]"
+	$(BIN)/pip install --quiet --constraint constraints.txt --editable ".[dev]"
 	touch $(INSTALLED)
 
 clean:

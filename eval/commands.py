@@ -1,28 +1,23 @@
-"""The commands ``mrta-zoo solve``, ``eval``, ``generate`` and ``demo``: their flags, and what they print."""
+"""The commands ``mrta-zoo solve``, ``eval`` and ``demo``: their flags, and what they print."""
 
 from __future__ import annotations
 
-import re
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated
 
-import numpy as np
-import tyro
 from tyro.conf import Positional, arg
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.case_folder import CaseFormat, write_case_folder
 from mrta_zoo.eval.console import progress_bar, results_console
 from mrta_zoo.eval.destination import check_destination
+from mrta_zoo.eval.flags import optional, parse
 from mrta_zoo.eval.rows import Row, write_rows
 from mrta_zoo.eval.runner import Solved, evaluate, solve_and_score
 from mrta_zoo.eval.schedule import schedule_table, totals
 from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.eval.threads import cpu_threads
-from mrta_zoo.generators import make_generator
 from mrta_zoo.io import Case, PlanScore, ScheduledTask, read_cases, read_scenario, write_plan
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import Decode, make_solver
@@ -30,14 +25,6 @@ from mrta_zoo.rules import MaskRule
 from mrta_zoo.suite import builtin_suite
 
 BUILTIN = "builtin"
-
-
-def optional(metavar: str) -> Any:
-    """A flag whose default is to be absent; the text says what happens then, and "(default: None)" would not."""
-    return arg(metavar=metavar, help_behavior_hint="")
-
-
-Bounds = Annotated[str | None, optional("LOW-HIGH")]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,7 +88,7 @@ def solve_command(argv: Sequence[str]) -> None:
     Raises:
         MrtaError: if an option cannot be used, or a file cannot be read or written.
     """
-    command = _parse(Solve, argv, "solve")
+    command = parse(Solve, argv, "solve")
     if command.out:
         check_destination(command.out)
     if command.plot:
@@ -136,12 +123,13 @@ def _write_solved(solved: Solved, path: Path) -> None:
         solved.plan,
         path,
         schedule=[
-            [ScheduledTask(visit.task, visit.arrival, visit.finish, visit.deadline, visit.completed) for visit in visits]
+            [
+                ScheduledTask(visit.task, visit.arrival, visit.finish, visit.deadline, visit.completed)
+                for visit in visits
+            ]
             for visits in score.schedule
         ],
-        score=PlanScore(
-            score.completed, score.tasks, score.completion, score.cost, score.distance, score.makespan
-        ),
+        score=PlanScore(score.completed, score.tasks, score.completion, score.cost, score.distance, score.makespan),
     )
 
 
@@ -175,7 +163,7 @@ def eval_command(argv: Sequence[str]) -> None:
     Raises:
         MrtaError: if an option cannot be used, a file cannot be read or written, or a method fails.
     """
-    command = _parse(Eval, argv, "eval")
+    command = parse(Eval, argv, "eval")
     if command.out:
         check_destination(command.out)
     solvers = {method: command.planning.solver(method) for method in _names(command.methods)}
@@ -219,82 +207,6 @@ def _names(methods: str) -> list[str]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Generate:
-    """Draw random scenarios into a new folder that `mrta-zoo eval --cases` reads.
-
-    Bounds are LOW-HIGH, both included, or one number. Those not given are the generator's own.
-
-    For example:
-      mrta-zoo generate --count 20 --robots 2-7 --out cases
-      mrta-zoo generate --generator uniform --tasks 50-200 --deadline 50-600 --format json --out cases
-    """
-
-    out: Annotated[Path, arg(metavar="DIR")]
-    """Folder to write; new or empty."""
-    generator: Literal["taptc", "uniform"] = "taptc"
-    """taptc: like the published TAPTC cases; uniform: everything uniform within bounds, as in the paper (§IV-A)."""
-    count: int = 10
-    """Number of scenarios."""
-    seed: int = 0
-    """The same seed and bounds give the same scenarios; the first ones stay the same with a higher --count."""
-    format: CaseFormat = "taptc"
-    """Of the files. TAPTC files hold no speeds."""
-    tasks: Bounds = None
-    """Number of tasks; 100 by default."""
-    robots: Bounds = None
-    """Number of robots; 2-7 by default."""
-    map: Annotated[str | None, optional("WIDTH-HEIGHT")] = None
-    """Sides of the map in distance units; 100 by default."""
-    workload: Bounds = None
-    """Work at a task, in work units; 20 by default, 10-30 for uniform. One number for taptc."""
-    capacity: Annotated[str | None, optional("LOW-HIGH|half|random")] = None
-    """Work a robot does per time unit: for uniform bounds, 1-3 by default; for taptc half (the first half of the
-    robots has 2, the others 1; the default) or random (1 or 2)."""
-    deadline: Bounds = None
-    """Only uniform: deadlines in time units; 50-600 by default."""
-    speed: Bounds = None
-    """Only uniform: distance a robot travels per time unit; 1 by default."""
-    group: Annotated[str | None, optional("{tight,slack,mixed}")] = None
-    """Only taptc: latest deadline 250-300 (tight), twice that (slack), or either (mixed, the default)."""
-
-
-def generate_command(argv: Sequence[str]) -> None:
-    """Run `mrta-zoo generate` with these arguments.
-
-    Raises:
-        MrtaError: if an option cannot be used, or the folder cannot be written.
-    """
-    command = _parse(Generate, argv, "generate")
-    if command.count < 1:
-        raise ConfigError(f"count is {command.count}; expected a whole number >= 1")
-    if command.seed < 0:
-        raise ConfigError(f"seed is {command.seed}; expected a whole number >= 0")
-    given: dict[str, Any] = {"group": command.group, "map_size": _bounds(command.map)}
-    for name in ("tasks", "robots", "workload", "capacity", "deadline", "speed"):
-        given[name] = _bounds(getattr(command, name))
-    fields = {name: value for name, value in given.items() if value is not None}
-    generator = make_generator(command.generator, **fields)
-    digits = len(str(command.count - 1))
-    # A stream of its own for each scenario, so that none depends on how many there are.
-    scenarios = (
-        generator(np.random.default_rng((command.seed, index)), f"{command.generator}{index:0{digits}d}")
-        for index in range(command.count)
-    )
-    write_case_folder(scenarios, command.out, command.format)
-    results_console().print(f"{command.count} scenarios written to {command.out}", soft_wrap=True)
-
-
-def _bounds(text: str | None) -> tuple[float, float] | float | str | None:
-    """Numbers written as ``2`` or ``2-7``; anything else as it is, for the generator to accept or refuse."""
-    if text is None:
-        return None
-    number = r"([0-9]*\.?[0-9]+)"
-    if pair := re.fullmatch(f"{number}-{number}", text):
-        return float(pair[1]), float(pair[2])
-    return float(text) if re.fullmatch(number, text) else text
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Demo:
     """See it all at work in a few minutes.
 
@@ -317,16 +229,7 @@ def demo_command(argv: Sequence[str]) -> None:
     Raises:
         MrtaError: if an option cannot be used, or something is not installed.
     """
-    command = _parse(Demo, argv, "demo")
+    command = parse(Demo, argv, "demo")
     from mrta_zoo.eval.demo import run_demo
 
     run_demo(command.out, command.policy)
-
-
-CommandClass = TypeVar("CommandClass")
-
-
-def _parse(of: type[CommandClass], argv: Sequence[str], name: str) -> CommandClass:
-    """The command with its flags. Exits with a message and code 2 if they cannot be understood."""
-    sys.stdout.flush()
-    return tyro.cli(of, args=list(argv), prog=f"mrta-zoo {name}", config=(tyro.conf.OmitArgPrefixes,))

@@ -22,7 +22,7 @@ from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.mission import Mission
 from mrta_zoo.policies.protocol import Policy
-from mrta_zoo.policies.registry import METHODS, load_learned, make_solver, require_torch
+from mrta_zoo.policies.registry import load_learned, make_solver, method_names, require_torch
 from mrta_zoo.scenario import Scenario
 
 STEPS_SHOWN = 10
@@ -55,14 +55,16 @@ def run_demo(folder: Path, policy_name: str = "capam") -> None:
 
     _heading(console, f"2. Methods compared on the built-in suite, {len(cases)} cases, scored by the verifier")
     with cpu_threads(1):
-        rows = run_with_progress(cases, {name: make_solver(name) for name in (*METHODS, policy_name)})
+        names = dict.fromkeys((*method_names(), policy_name))
+        rows = run_with_progress(cases, {name: make_solver(name) for name in names})
     write_rows(rows, folder / "rows.csv")
     for table in summary_tables(rows):
         console.print(table)
     console.print(f"all rows: {folder / 'rows.csv'}", soft_wrap=True)
 
     _heading(console, "3. A small policy learns from scratch by REINFORCE")
-    show_training(console, _new_folder(folder / "training"))
+    with cpu_threads(1):  # a second one waits for the first more than it helps, above all on a busy machine
+        show_training(console, _new_folder(folder / "training"))
 
     _heading(console, "4. A plan as a picture")
     with cpu_threads(1):

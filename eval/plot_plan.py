@@ -21,6 +21,7 @@ try:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.collections import LineCollection
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
     from matplotlib.patheffects import withStroke
@@ -55,9 +56,10 @@ def draw_plan(scenario: Scenario, plan: Plan, score: Score | None = None) -> Fig
     """
     score = verify(scenario, plan) if score is None else score
     height = min(max(LEAST_HEIGHT, 1.4 + HEIGHT_PER_ROBOT * scenario.num_robots), MOST_HEIGHT)
-    figure = Figure(figsize=(17.0, height), dpi=110, facecolor="white", layout="constrained")
+    figure = Figure(
+        figsize=(17.0, height), dpi=110, facecolor="white", layout=ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.12)
+    )
     FigureCanvasAgg(figure)
-    figure.get_layout_engine().set(h_pad=0.12, w_pad=0.12)
     chart_map, chart_time = figure.subplots(1, 2, width_ratios=(1.0, 1.75))
     _draw_map(chart_map, scenario, plan, score)
     _draw_time(chart_time, scenario, score)
@@ -66,7 +68,7 @@ def draw_plan(scenario: Scenario, plan: Plan, score: Score | None = None) -> Fig
 
 
 def save_plan_picture(scenario: Scenario, plan: Plan, path: Path, score: Score | None = None) -> None:
-    """Write the picture in the format that the suffix says, such as ``.png``, ``.svg`` or ``.pdf``; whole or not at all.
+    """Write the picture, whole or not at all, in the format that the suffix says: ``.png``, ``.svg``, ``.pdf``…
 
     Raises:
         ConfigError: if there is no such format, or the file cannot be written.
@@ -101,8 +103,8 @@ def _title(scenario: Scenario, plan: Plan, score: Score) -> str:
     visited = sum(len(visits) for visits in score.schedule)
     method = f", planned by {plan.method}" if plan.method else ""
     return (
-        f"{scenario.name}{method}: {score.completed} of {score.tasks} tasks completed ({100 * score.completion:.1f} %), "
-        f"{late} late, {score.tasks - visited} not taken"
+        f"{scenario.name}{method}: {score.completed} of {score.tasks} tasks completed "
+        f"({100 * score.completion:.1f} %), {late} late, {score.tasks - visited} not taken"
     )
 
 
@@ -121,7 +123,12 @@ def _draw_map(axes: Any, scenario: Scenario, plan: Plan, score: Score) -> None:
         _draw_way(axes, way, _colour(robot), arrows=numbered)
         completed = np.array([visit.completed for visit in score.schedule[robot]], dtype=np.bool_)
         axes.scatter(
-            *scenario.task_xy[tasks[completed]].T, s=size, c=_colour(robot), edgecolors="white", linewidths=0.8, zorder=4
+            *scenario.task_xy[tasks[completed]].T,
+            s=size,
+            c=_colour(robot),
+            edgecolors="white",
+            linewidths=0.8,
+            zorder=4,
         )
         axes.scatter(*scenario.task_xy[tasks[~completed]].T, s=1.6 * size, c=LATE, marker="x", linewidths=1.8, zorder=5)
     axes.scatter(
@@ -190,7 +197,9 @@ def _draw_time(axes: Any, scenario: Scenario, score: Score) -> None:
                 edgecolor=colour, linewidth=0.9, hatch="////" if face == "white" else None, zorder=3,
             )  # fmt: skip
         axes.vlines(deadline, robot + 0.26, robot + 0.40, color=colour, linewidth=1.3, zorder=3)
-        axes.scatter(finish[late], np.full(late.sum(), robot - 0.32), marker="x", s=34, c=LATE, linewidths=1.8, zorder=5)
+        axes.scatter(
+            finish[late], np.full(late.sum(), robot - 0.32), marker="x", s=34, c=LATE, linewidths=1.8, zorder=5
+        )
         for visit in visits if numbered else ():
             if visit.finish - visit.arrival > 0.011 * end:
                 axes.text(
@@ -211,7 +220,8 @@ def _draw_time(axes: Any, scenario: Scenario, score: Score) -> None:
             Patch(facecolor=FAINT, edgecolor=FAINT, label="work (number of the task)"),
             Line2D([], [], color=FAINT, marker="|", linestyle="", markersize=8, markeredgewidth=1.6,
                    label="deadlines of the robot's tasks"),
-            Line2D([], [], color=LATE, marker="x", linestyle="", markersize=7, markeredgewidth=1.8, label="finished late"),
+            Line2D([], [], color=LATE, marker="x", linestyle="", markersize=7, markeredgewidth=1.8,
+                   label="finished late"),
         ],
     )  # fmt: skip
     axes.set_title("Who does what when", fontsize=10, color=FAINT, loc="left")
@@ -219,7 +229,9 @@ def _draw_time(axes: Any, scenario: Scenario, score: Score) -> None:
 
 def _segments(axes: Any, leave: FloatArray, arrival: FloatArray, robot: int, colour: str) -> None:
     ends = np.stack((leave, np.full_like(leave, robot), arrival, np.full_like(leave, robot)), axis=1)
-    axes.add_collection(LineCollection(ends.reshape(-1, 2, 2), colors=colour, linewidths=1.6, alpha=0.8, zorder=2))
+    axes.add_collection(
+        LineCollection(list(ends.reshape(-1, 2, 2)), colors=colour, linewidths=1.6, alpha=0.8, zorder=2)
+    )
 
 
 def _load(score: Score, robot: int) -> str:

@@ -6,14 +6,16 @@ from collections.abc import Callable, Mapping, Sequence
 from statistics import fmean
 
 from rich import box
+from rich.console import Group
 from rich.table import Table
+from rich.text import Text
 
 from mrta_zoo.eval.rows import Row
 
 Cell = Callable[[Sequence[Row]], str]
 
 
-def summary_tables(rows: Sequence[Row], best_known: Mapping[str, int] | None = None) -> list[Table]:
+def summary_tables(rows: Sequence[Row], best_known: Mapping[str, int] | None = None) -> list[Group]:
     """Mean completion, share of the best known plan, and planning time.
 
     Args:
@@ -36,10 +38,10 @@ def summary_tables(rows: Sequence[Row], best_known: Mapping[str, int] | None = N
     return tables
 
 
-def _table(title: str, rows: Sequence[Row], cell: Cell) -> Table:
+def _table(title: str, rows: Sequence[Row], cell: Cell) -> Group:
     methods = list(dict.fromkeys(row.method for row in rows))
     sizes = sorted({(row.tasks, row.robots) for row in rows})
-    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, title_style="bold", pad_edge=False)
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("tasks", "robots", "cases", *methods):
         table.add_column(heading, justify="right", overflow="fold")
     for size in sizes:
@@ -48,7 +50,7 @@ def _table(title: str, rows: Sequence[Row], cell: Cell) -> Table:
         table.add_row(*map(str, size), *_cells(group, methods, cell), end_section=last)
     if len(sizes) > 1:
         table.add_row("all", "", *_cells(rows, methods, cell))
-    return table
+    return Group(Text(title, style="bold"), table)  # a table's own title is folded to the table's width
 
 
 def _cells(group: Sequence[Row], methods: Sequence[str], cell: Cell) -> list[str]:

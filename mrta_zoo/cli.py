@@ -1,4 +1,4 @@
-"""The command line, ``mrta-zoo``: which command, and what becomes of errors. Commands are in `eval.commands`.
+"""The command line, ``mrta-zoo``: which command, and what becomes of errors. Commands are in `eval`.
 
 Exit codes: 0, 2 for what the user can put right (one sentence on standard error, no traceback), 130 after Ctrl-C.
 """
@@ -32,7 +32,7 @@ def _eval(argv: list[str]) -> None:
 
 
 def _generate(argv: list[str]) -> None:
-    from mrta_zoo.eval.commands import generate_command
+    from mrta_zoo.eval.generate import generate_command
 
     generate_command(argv)
 

@@ -9,9 +9,7 @@ from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
 
 
-def run_in_environment(
-    policy: Policy, scenario: Scenario, mask_rule: MaskRule = "feasible", method: str = ""
-) -> Plan:
+def run_in_environment(policy: Policy, scenario: Scenario, mask_rule: MaskRule = "feasible", method: str = "") -> Plan:
     """Let `policy` decide for every robot of a mission, and note who took what.
 
     Args:

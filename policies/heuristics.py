@@ -85,4 +85,5 @@ def _nearest(observation: Observation, tasks: Indices) -> Indices:
 
 def _least(tasks: Indices, values: npt.NDArray[np.floating]) -> Indices:
     """Those of `tasks` whose value is the least, up to `TIE`."""
-    return tasks[values <= values.min() + TIE]
+    least: Indices = tasks[values <= values.min() + TIE]
+    return least

@@ -56,8 +56,8 @@ class ReplayPolicy:
                 return task
             if self.then is None:
                 raise PlanError(
-                    f"the plan sends robot {robot} to task {task}, which it may not choose now: it is taken, or the mask "
-                    "rule forbids it; replay under the rule the plan was made for, or give a policy as `then`"
+                    f"the plan sends robot {robot} to task {task}, which it may not choose now: it is taken, or the "
+                    "mask rule forbids it; replay under the rule the plan was made for, or give a policy as `then`"
                 )
         if self.then is None:
             raise PlanError(

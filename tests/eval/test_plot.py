@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import builtins
+import importlib
 import sys
 from pathlib import Path
 
@@ -35,9 +36,7 @@ PLAN = Plan.of([(0, 1), ()], "small", "by hand")
 def test_the_picture_says_what_the_plan_does() -> None:
     figure = draw_plan(SCENARIO, PLAN)
     routes, times = figure.axes
-    assert figure.get_suptitle() == (
-        "small, planned by by hand: 1 of 3 tasks completed (33.3 %), 1 late, 1 not taken"
-    )
+    assert figure.get_suptitle() == ("small, planned by by hand: 1 of 3 tasks completed (33.3 %), 1 late, 1 not taken")
     bars = [patch for patch in times.patches if isinstance(patch, Rectangle)]
     assert sorted((bar.get_x(), bar.get_x() + bar.get_width()) for bar in bars) == [(10, 15), (35, 40)]
     assert [label.get_text() for label in times.get_yticklabels()] == ["robot 0\n1 of 2", "robot 1\n0 of 0"]
@@ -88,4 +87,4 @@ def test_without_matplotlib_it_names_the_extra(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.delitem(sys.modules, "mrta_zoo.eval.plot_plan")
     monkeypatch.setattr(builtins, "__import__", without)
     with pytest.raises(MissingExtraError, match=r'pip install "mrta_zoo\[plot\]"'):
-        import mrta_zoo.eval.plot_plan
+        importlib.import_module("mrta_zoo.eval.plot_plan")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from real_cases import REAL, needs_real_cases
 from strategies import seeded_scenarios
 
 from mrta_zoo.errors import ActionError
@@ -15,7 +16,6 @@ from mrta_zoo.policies.heuristics import EarliestDeadlinePolicy, NearestPolicy, 
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
-from real_cases import REAL, needs_real_cases
 
 
 def scenario_of(
@@ -92,7 +92,7 @@ def test_the_aec_loop_names_who_chose_what_it_may_not() -> None:
             return 1
 
     scenario = scenario_of([(1, 0), (50, 0)], [40, 40], [(0, 0)])
-    with pytest.raises(ActionError, match="robot_0 sent action 1: .*too late; its choices are 0"):
+    with pytest.raises(ActionError, match=r"robot_0 sent action 1: .*too late; its choices are 0"):
         run_in_environment(Stubborn(), scenario)
 
 

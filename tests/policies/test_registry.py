@@ -86,7 +86,7 @@ def test_a_trained_policy_by_file_and_by_folder(tmp_path: Path) -> None:
     from mrta_zoo.policies.sharing import build_network
     from mrta_zoo.policies.weights import PolicyInfo, save_policy
 
-    config = NetworkConfig()
+    config = NetworkConfig(embedding=16, heads=2)
     save_policy(tmp_path / "policy.safetensors", build_network(config, "shared", 1, seed=0), PolicyInfo(network=config))
     scenario = seeded_scenarios(6, 1)[0]
     by_folder = make_solver(str(tmp_path))
