@@ -67,8 +67,7 @@ class ScenarioBatch:
         room_m = m if max_robots is None else max_robots
         if room_n < n or room_m < m:
             raise ConfigError(
-                f"the largest scenario has {n} tasks and {m} robots; the batch was given room for "
-                f"{room_n} and {room_m}"
+                f"the largest scenario has {n} tasks and {m} robots; the batch was given room for {room_n} and {room_m}"
             )
         n, m = room_n, room_m
 
@@ -218,9 +217,7 @@ class BatchMission:
     def cost(self) -> Tensor:
         """(B,) float64, the objective (Eq. 1 of the paper); final where the mission is done."""
         s = self.scenarios
-        terms = task_cost(
-            self.taken_by >= 0, self.finish, s.deadline, self.time[:, None], torch.where, torch.maximum
-        )
+        terms = task_cost(self.taken_by >= 0, self.finish, s.deadline, self.time[:, None], torch.where, torch.maximum)
         return torch.where(s.task_exists, terms, 0.0).sum(1)
 
     def completed(self) -> Tensor:

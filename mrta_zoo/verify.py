@@ -86,9 +86,7 @@ def verify(scenario: Scenario, plan: Plan) -> Score:
         completed=completed,
         completion=completed / scenario.num_tasks,
         cost=math.fsum(terms),
-        distance=math.fsum(
-            leg for robot, route in enumerate(routes) for leg in _legs(scenario, robot, route)
-        ),
+        distance=math.fsum(leg for robot, route in enumerate(routes) for leg in _legs(scenario, robot, route)),
         makespan=makespan,
         schedule=schedule,
     )

@@ -81,9 +81,7 @@ def test_an_empty_batch() -> None:
 
 
 def test_unknown_mask_rule() -> None:
-    with pytest.raises(
-        ConfigError, match=r"^mask_rule is 'any'; expected one of feasible, active, unvisited$"
-    ):
+    with pytest.raises(ConfigError, match=r"^mask_rule is 'any'; expected one of feasible, active, unvisited$"):
         BatchMission(ScenarioBatch.of([SMALL]), "any")  # type: ignore[arg-type]
 
 
@@ -139,9 +137,7 @@ def test_finished_missions_ignore_their_steps() -> None:
     mission.step(torch.tensor([1, 1]))
     assert mission.done.tolist() == [True, False]
     assert not mission.mask()[0].any()
-    before = {
-        name: value[0].clone() for name, value in vars(mission).items() if isinstance(value, torch.Tensor)
-    }
+    before = {name: value[0].clone() for name, value in vars(mission).items() if isinstance(value, torch.Tensor)}
     mission.step(torch.tensor([1, 2]))  # task 1 of the first mission has long been done
     mission.step(torch.tensor([2, 0]))  # and its task 2 is padding
     assert mission.done.all()

@@ -121,9 +121,7 @@ def test_robots_that_arrive_together_act_in_index_order() -> None:
 
 def test_whoever_is_free_first_acts_next() -> None:
     # Robot 0 goes 10 far, robot 1 only 5, then 4 more (at 9), and then 2 more (at 11); robot 0 is free at 10.
-    case = scenario(
-        [(6, 8, 99, 0), (3, 4, 99, 0), (3, 8, 99, 0), (3, 10, 99, 0), (0, 0, 99, 0)], [(0, 0), (0, 0)]
-    )
+    case = scenario([(6, 8, 99, 0), (3, 4, 99, 0), (3, 8, 99, 0), (3, 10, 99, 0), (0, 0, 99, 0)], [(0, 0), (0, 0)])
     mission = Mission(case)
     log = []
     while not mission.done:
@@ -292,9 +290,7 @@ def test_a_task_that_needs_no_time_is_finished_before_the_robot_takes_another() 
     mission = Mission(scenario([(0, 0, 9, 0), (0, 0, 9, 0)]))
     mission.take(0, 0)
     assert mission.free() == []
-    with pytest.raises(
-        ActionError, match=r"^robot 0 has just taken task 0 and cannot take task 1 too; advance"
-    ):
+    with pytest.raises(ActionError, match=r"^robot 0 has just taken task 0 and cannot take task 1 too; advance"):
         mission.take(0, 1)
     assert mission.advance() == [Finished(0, 0, 0.0, True)]
     assert mission.free() == [0]
@@ -323,14 +319,10 @@ def test_errors_of_take(robot: int, task: int, message: str) -> None:
 
 def test_errors_name_what_happened() -> None:
     mission = run(scenario(THREE), 0)
-    with pytest.raises(
-        ActionError, match=r"^robot 0 may not choose task 0 at time 6: taken; its choices are 2$"
-    ):
+    with pytest.raises(ActionError, match=r"^robot 0 may not choose task 0 at time 6: taken; its choices are 2$"):
         mission.assign(0)
     mission.assign(2)
-    with pytest.raises(
-        ActionError, match=r"^task 1 was chosen, but the mission is over: every robot is retired$"
-    ):
+    with pytest.raises(ActionError, match=r"^task 1 was chosen, but the mission is over: every robot is retired$"):
         mission.assign(1)
     mission = run(scenario([(3, 4, 99, 0), (3, 4, 4, 0), (9, 9, 99, 0)], [(0, 0), (0, 1)]), 0, rule="active")
     with pytest.raises(ActionError, match=r"^robot 0 is not free at time 0; robot 1 is to act$"):
@@ -349,9 +341,7 @@ def test_long_lists_of_choices_are_cut() -> None:
 
 
 def test_unknown_mask_rule() -> None:
-    with pytest.raises(
-        ConfigError, match=r"^mask_rule is 'any'; expected one of feasible, active, unvisited$"
-    ):
+    with pytest.raises(ConfigError, match=r"^mask_rule is 'any'; expected one of feasible, active, unvisited$"):
         Mission(scenario(THREE), "any")  # type: ignore[arg-type]
 
 

@@ -99,9 +99,7 @@ def test_ego_is_the_observers_row() -> None:
 
 def test_mission() -> None:
     # L/V/T = 80 / 5 / 40 = 0.4 → 0.4 / 1.4; W/C/T = 8 / 2 / 40 = 0.1 → 0.1 / 1.1.
-    assert look(under_way(), 1)["observation"]["mission"] == pytest.approx(
-        [1.8 / 40, 0.4 / 1.4, 0.1 / 1.1], abs=1e-7
-    )
+    assert look(under_way(), 1)["observation"]["mission"] == pytest.approx([1.8 / 40, 0.4 / 1.4, 0.1 / 1.1], abs=1e-7)
 
 
 def test_times_after_the_last_deadline_show_as_one() -> None:

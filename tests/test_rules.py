@@ -29,9 +29,7 @@ def test_may_choose(rule: str, allowed: list[bool]) -> None:
 
 
 def test_unknown_rule() -> None:
-    with pytest.raises(
-        ConfigError, match=r"^mask_rule is 'late'; expected one of feasible, active, unvisited$"
-    ):
+    with pytest.raises(ConfigError, match=r"^mask_rule is 'late'; expected one of feasible, active, unvisited$"):
         may_choose("late", np.zeros(1), 0.0, np.ones(1))  # type: ignore[arg-type]
 
 

@@ -72,10 +72,7 @@ def expected(scenario: Scenario, routes: list[list[int]], rule: MaskRule) -> Exp
         finish_if.append(ends)
     with_choice = [(now, robot) for robot, now in enumerate(ready) if any(masks[robot])]
     time, actor = min(with_choice, default=(max(ready), -1))
-    retired = [
-        not any(masks[robot]) and (actor < 0 or (now, robot) < (time, actor))
-        for robot, now in enumerate(ready)
-    ]
+    retired = [not any(masks[robot]) and (actor < 0 or (now, robot) < (time, actor)) for robot, now in enumerate(ready)]
     status = []
     for end, deadline in zip(finish, deadlines, strict=True):
         if math.isnan(end):
@@ -196,9 +193,7 @@ def run_together(
 @pytest.mark.parametrize("seed", range(5))
 def test_many_seeded_scenarios(rule: MaskRule, seed: int) -> None:
     cases = seeded_scenarios(seed, 400)
-    run_together(
-        cases, rule, [seeded_chooser(seed * 1000 + b) for b in range(len(cases))], 13 + seed, 4 + seed
-    )
+    run_together(cases, rule, [seeded_chooser(seed * 1000 + b) for b in range(len(cases))], 13 + seed, 4 + seed)
 
 
 @pytest.mark.parametrize("rule", RULES)
