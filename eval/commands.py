@@ -101,7 +101,7 @@ def solve_command(argv: Sequence[str]) -> None:
     with cpu_threads(command.planning.threads):
         solved = solve_and_score(solver, scenario)
     if command.out:
-        _write_solved(solved, command.out)
+        write_solved(solved, command.out)
     if command.plot:
         save_plan_picture(scenario, solved.plan, command.plot, solved.score)
     console = results_console()
@@ -117,7 +117,8 @@ def solve_command(argv: Sequence[str]) -> None:
             console.print(f"{what} written to {path}", soft_wrap=True)
 
 
-def _write_solved(solved: Solved, path: Path) -> None:
+def write_solved(solved: Solved, path: Path) -> None:
+    """Write the plan with its schedule and score as JSON."""
     score = solved.score
     write_plan(
         solved.plan,

@@ -12,7 +12,7 @@ from rich.table import Table
 
 from mrta_zoo import mrta_v0
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.commands import builtin_cases, run_with_progress
+from mrta_zoo.eval.commands import builtin_cases, run_with_progress, write_solved
 from mrta_zoo.eval.console import results_console
 from mrta_zoo.eval.plot_plan import save_plan_picture
 from mrta_zoo.eval.rows import write_rows
@@ -32,7 +32,7 @@ BARS = "▁▂▃▄▅▆▇█"
 
 
 def run_demo(folder: Path, policy_name: str = "capam") -> None:
-    """Run the demo, leaving ``rows.csv``, ``plan.png`` and a training run in `folder`.
+    """Run the demo, leaving ``rows.csv``, ``plan.json``, ``plan.png`` and a training run in `folder`.
 
     Args:
         folder: is made if it does not exist.
@@ -69,10 +69,11 @@ def run_demo(folder: Path, policy_name: str = "capam") -> None:
     _heading(console, "4. A plan as a picture")
     with cpu_threads(1):
         solved = solve_and_score(make_solver(policy_name), scenarios[DRAWN])
+    write_solved(solved, folder / "plan.json")
     save_plan_picture(scenarios[DRAWN], solved.plan, folder / "plan.png", solved.score)
     console.print(f"{DRAWN} planned by {policy_name} in {solved.seconds:.3f} s:", soft_wrap=True)
     console.print(totals(solved.score), soft_wrap=True)
-    console.print(f"routes and schedule: {(folder / 'plan.png').resolve()}", soft_wrap=True)
+    console.print(f"routes and schedule: {(folder / 'plan.png').resolve()} (the data: plan.json)", soft_wrap=True)
     console.print(f"\nThe demo took {time.perf_counter() - begun:.0f} s.")
 
 

@@ -18,7 +18,7 @@ import csv
 import io
 import os
 import shutil
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 
 import torch
@@ -70,10 +70,12 @@ def resume(folder: Path) -> tuple[Reinforce, float]:
     Raises:
         ConfigError: if there is no run, or its files are damaged.
     """
-    run = Reinforce(saved_config(folder))
+    config = saved_config(folder)
     numbers = _checkpoints(folder)
     if not numbers:
-        return run, 0.0
+        return Reinforce(config), 0.0
+    run = Reinforce(replace(config, initial=""))  # the checkpoint holds the weights; the policy may be gone by now
+    run.config = config
     at = folder / "checkpoints" / _name(numbers[-1])
     state = read_json(at / "state.json", RunState)
     load_state(run.network, read_tensors(at / "network.safetensors"), at / "network.safetensors")

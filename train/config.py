@@ -44,6 +44,8 @@ class TrainConfig:
         epoch: updates between two validations, each with a checkpoint, and with the baseline's t-test.
         validation_scenarios: number of validation scenarios, drawn once from the training distribution.
         significance: level of the baseline's t-test.
+        initial: start from the weights of this policy (a shipped name, a .safetensors file, or a run's folder) instead
+            of random ones; its architecture must be the same. Empty for random weights.
         seed: of everything random.
         keep_checkpoints: how many of the latest checkpoints to keep.
         device: "cpu", "cuda", or "auto" (a GPU if there is one).
@@ -69,6 +71,7 @@ class TrainConfig:
     epoch: int = 50
     validation_scenarios: int = 96
     significance: float = 0.05
+    initial: str = ""
     seed: int = 0
     keep_checkpoints: int = 3
     device: str = "auto"

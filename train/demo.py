@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 from rich.console import Console
@@ -14,12 +13,11 @@ from mrta_zoo.train.reinforce import Validation
 
 
 def short_training(folder: Path, console: Console | None = None) -> list[Validation]:
-    """Train a small CapAM from scratch for under a minute, in `folder`, which must not hold a run yet.
+    """Train a small CapAM from scratch for about a minute (preset "smoke"). `folder` must not hold a run yet.
 
     Returns:
         The validation history: it rises visibly.
     """
-    config = replace(PRESETS["smoke"], updates=120, epoch=20)
-    run = checkpoint.start(folder, config)
+    run = checkpoint.start(folder, PRESETS["smoke"])
     train(run, folder, console=console)
     return run.history

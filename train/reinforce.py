@@ -10,16 +10,20 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import torch
 from torch import Tensor
 
 from mrta_zoo.batch import ScenarioBatch
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import ScenarioGenerator
 from mrta_zoo.policies.capam.inputs import Tasks
+from mrta_zoo.policies.neural import load_policy
 from mrta_zoo.policies.rollout import Rollout, roll_out
 from mrta_zoo.policies.sharing import Network, build_network
+from mrta_zoo.policies.weights import load_state
 from mrta_zoo.train.baselines import Baseline, RolloutBaseline, SamplesBaseline
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import training_generator
@@ -67,12 +71,17 @@ class Reinforce:
         Args:
             config: the run.
             generator: draws the scenarios; by default, as `config.generator` says.
+
+        Raises:
+            ConfigError: if `config.initial` names no policy, or one of another architecture.
         """
         self.config = config
         self.device = _device(config.device)
         self.generator = generator or training_generator(config)
         self.objective = OBJECTIVES[config.objective]
         self.network: Network = build_network(config.network, config.sharing, config.max_robots, config.seed)
+        if config.initial:
+            self._start_from(config.initial)
         self.network.to(self.device)
         self.optimizer = torch.optim.Adam(self.network.parameters(), lr=config.learning_rate)
         self.baseline: Baseline = (
@@ -156,6 +165,15 @@ class Reinforce:
             yield self.step()
             if self.update % self.config.epoch == 0 or self.update == self.config.updates:
                 yield self.validate()
+
+    def _start_from(self, initial: str) -> None:
+        policy, config = load_policy(initial), self.config
+        if (policy.info.network, policy.info.sharing) != (config.network, config.sharing):
+            raise ConfigError(
+                f"initial is {initial!r}, which is {policy.info.sharing} {policy.info.network}; "
+                f"the run is {config.sharing} {config.network}"
+            )
+        load_state(self.network, dict(policy.network.state_dict()), Path(initial))
 
     def _learning_rate(self) -> float:
         first, last = self.config.learning_rate, self.config.final_learning_rate

@@ -100,6 +100,25 @@ def test_best_policy_is_kept_and_loads(tmp_path: Path) -> None:
     assert policy.info.network == TINY.network
 
 
+def test_a_run_may_start_from_another_and_resume_without_it(tmp_path: Path) -> None:
+    first = checkpoint.start(tmp_path / "first", TINY)
+    first.validate()
+    checkpoint.save(tmp_path / "first", first, 0.0)
+    config = replace(TINY, seed=1, initial=str(tmp_path / "first"), baseline="rollout")
+    second = checkpoint.start(tmp_path / "second", config)
+    for name, value in weights(load_policy(tmp_path / "first")).items():  # type: ignore[arg-type]
+        assert torch.equal(value, weights(second)[name])
+    second.validate()
+    checkpoint.save(tmp_path / "second", second, 0.0)
+    (tmp_path / "first").rename(tmp_path / "elsewhere")
+    resumed, _ = checkpoint.resume(tmp_path / "second")
+    list(second.run()), list(resumed.run())
+    for name, value in weights(second).items():
+        assert torch.equal(value, weights(resumed)[name])
+    with pytest.raises(ConfigError, match=r"which is shared NetworkConfig.*the run is shared NetworkConfig"):
+        Reinforce(replace(TINY, initial=str(tmp_path / "elsewhere"), network=NetworkConfig()))
+
+
 def test_a_folder_holds_one_run(tmp_path: Path) -> None:
     checkpoint.start(tmp_path, TINY)
     with pytest.raises(ConfigError, match=r"already holds a run; go on with it \(--resume\)"):
