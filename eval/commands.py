@@ -40,9 +40,9 @@ class PlanningFlags:
     """Seconds a mission for methods that can search for longer. By default they stop by themselves."""
     seed: int = 0
     """Of everything drawn at random. The same seed gives the same plan."""
-    mask_rule: MaskRule = "feasible"
+    mask_rule: Annotated[MaskRule | None, optional("{feasible,active,unvisited}")] = None
     """What a robot may choose: feasible, what it can finish by the deadline; active, whose deadline has not passed;
-    unvisited, anything not yet taken."""
+    unvisited, anything not yet taken. By default feasible or, for a trained policy, what it was trained under."""
     threads: int = 1
     """CPU threads for learned methods. One is as fast as several for single missions, and timings compare."""
 
@@ -72,9 +72,9 @@ class Solve:
     """The mission: a TAPTC task file, or a scenario in .json or .csv."""
     agents: Annotated[Path | None, optional("AGENTFILE")] = None
     """The robots: a TAPTC agent file, or .csv. Without it they are in TASKFILE or, for TAPTC, in agent/ beside it."""
-    method: Annotated[str, arg(metavar="METHOD")] = "capam"
-    """random, nearest, edf (earliest deadline), capam (trained, ships with the package), a policy's .safetensors
-    file, or the folder of a training run."""
+    method: Annotated[str, arg(metavar="METHOD")] = "capam-plus"
+    """random, nearest, edf (earliest deadline), capam or capam-plus (trained, ship with the package), a policy's
+    .safetensors file, or the folder of a training run."""
     out: Annotated[Path | None, optional("PLAN.json")] = None
     """Write routes, schedule and score here, as JSON."""
     plot: Annotated[Path | None, optional("PLAN.png")] = None
@@ -150,8 +150,8 @@ class Eval:
     cases: Annotated[str, arg(metavar="DIR|builtin")]
     """A folder of cases (TAPTC: group*/NAME.txt with agent/NAME.txt or agent/a{n}i0{i}.txt; or .json or .csv
     scenarios), or builtin: 96 drawn cases with 100 tasks and 2 to 7 robots."""
-    methods: Annotated[str, arg(metavar="METHOD,METHOD,…")] = "random,nearest,edf,capam"
-    """What to compare: random, nearest, edf, capam, .safetensors files and folders of training runs."""
+    methods: Annotated[str, arg(metavar="METHOD,METHOD,…")] = "random,nearest,edf,capam,capam-plus"
+    """What to compare: random, nearest, edf, capam, capam-plus, .safetensors files and folders of training runs."""
     out: Annotated[Path | None, optional("ROWS.csv")] = None
     """Write the rows here, once all are known: case, method, tasks, robots, completed, completion (0 to 1), cost,
     distance, makespan, seconds."""
@@ -220,7 +220,7 @@ class Demo:
 
     out: Annotated[Path, arg(metavar="DIR")] = Path("mrta_zoo_demo")
     """Folder for the table's rows, the training run and the picture; made if it does not exist."""
-    policy: Annotated[str, arg(metavar="POLICY")] = "capam"
+    policy: Annotated[str, arg(metavar="POLICY")] = "capam-plus"
     """The trained policy to show: the one that ships with the package, a .safetensors file, or the folder of a run."""
 
 

@@ -31,7 +31,7 @@ STEPPED, DRAWN = "r13a3i00", "r13a7i00"
 BARS = "▁▂▃▄▅▆▇█"
 
 
-def run_demo(folder: Path, policy_name: str = "capam") -> None:
+def run_demo(folder: Path, policy_name: str = "capam-plus") -> None:
     """Run the demo, leaving ``rows.csv``, ``plan.json``, ``plan.png`` and a training run in `folder`.
 
     Args:

@@ -62,9 +62,10 @@ class EarliestDeadlinePolicy:
         Raises:
             ActionError: if there is nothing to choose.
         """
-        choices = _choices(observation, agent)
-        most_urgent = _least(choices, observation["observation"]["tasks"][choices, _DEADLINE])
-        return int(_nearest(observation, most_urgent)[0])
+        choices, tasks = _choices(observation, agent), observation["observation"]["tasks"]
+        if choices[0] == len(tasks):
+            return int(choices[0])
+        return int(_nearest(observation, _least(choices, tasks[choices, _DEADLINE]))[0])
 
 
 def _choices(observation: Observation, agent: str) -> Indices:
@@ -78,6 +79,8 @@ def _choices(observation: Observation, agent: str) -> Indices:
 def _nearest(observation: Observation, tasks: Indices) -> Indices:
     """Those of `tasks` that are nearest to the robot, in order of index."""
     seen = observation["observation"]
+    if tasks[0] == len(seen["tasks"]):  # the parallel form's no-op, which then is the only choice
+        return tasks
     places = seen["tasks"][tasks].astype(np.float64)
     ego = seen["ego"].astype(np.float64)
     return _least(tasks, np.hypot(places[:, _X] - ego[_EGO_X], places[:, _Y] - ego[_EGO_Y]))

@@ -74,12 +74,21 @@ class NeuralPolicy:
     def decide(self, observation: Observation) -> Decision:
         """The task to take, with probabilities. The encoder runs only when the tasks differ from the last call's.
 
+        In the parallel form a robot that is not free takes the no-op.
+
         Raises:
-            ConfigError: if the observation leaves nothing to choose.
+            ConfigError: if the observation leaves nothing to choose, or is flat.
         """
-        if not observation["action_mask"].any():
+        if not isinstance(observation, dict):
+            raise ConfigError('a policy reads Dict observations; make the environment with observation="dict"')
+        seen, mask = observation["observation"], observation["action_mask"]
+        tasks = len(seen["tasks"])
+        if len(mask) > tasks:  # the parallel form, whose last action is the no-op
+            if mask[tasks]:
+                return Decision(tasks, 0.0, np.zeros(tasks, dtype=np.float32))
+            observation = {**observation, "action_mask": mask[:tasks]}
+        if not mask.any():
             raise ConfigError("this robot has nothing to choose; a policy acts only when its robot's turn comes")
-        seen = observation["observation"]
         unchanging = seen["tasks"][:, :4].tobytes() + seen["mission"][1:].tobytes()
         if unchanging != self._encoded_for:
             self._encoding = self.network.encode(Tasks.of_observations([observation]))

@@ -37,7 +37,8 @@ class SolverOptions:
             missions and the greedy one. None is "sample" if there is a budget, else "greedy".
         samples: missions that "sample" draws in one go, >= 1.
         budget: seconds a scenario that methods which search may take, > 0; None leaves it to the method.
-        mask_rule: what robots may choose, see `rules.MaskRule`.
+        mask_rule: what robots may choose, see `rules.MaskRule`. None is "feasible" or, for learned methods, the rule
+            they were trained under.
 
     Raises:
         ConfigError: if a value is out of range.
@@ -47,7 +48,7 @@ class SolverOptions:
     decode: Decode | None = None
     samples: int = 64
     budget: float | None = None
-    mask_rule: MaskRule = "feasible"
+    mask_rule: MaskRule | None = None
 
     def __post_init__(self) -> None:
         if self.seed < 0:
@@ -60,7 +61,7 @@ class SolverOptions:
             raise ConfigError(f"samples is {self.samples}; expected a whole number >= 1")
         if self.budget is not None and not 0 < self.budget < math.inf:
             raise ConfigError(f"budget is {self.budget:g}; expected a number of seconds > 0")
-        if self.mask_rule not in get_args(MaskRule):
+        if self.mask_rule is not None and self.mask_rule not in get_args(MaskRule):
             raise check_mask_rule(self.mask_rule)
 
 
@@ -82,12 +83,12 @@ class PolicySolver:
 
     Args:
         make_policy: gives the policy for one mission.
-        mask_rule: what robots may choose.
+        options: of which the mask rule counts.
         method: what plans are signed with.
     """
 
-    def __init__(self, make_policy: Callable[[], Policy], mask_rule: MaskRule, method: str) -> None:
-        self._make_policy, self._mask_rule, self._method = make_policy, mask_rule, method
+    def __init__(self, make_policy: Callable[[], Policy], options: SolverOptions, method: str) -> None:
+        self._make_policy, self._mask_rule, self._method = make_policy, options.mask_rule or "feasible", method
 
     def solve(self, scenario: Scenario) -> Plan:
         """A plan for `scenario`."""
@@ -125,15 +126,15 @@ class LearnedSolver:
 METHODS: dict[str, Method] = {
     "random": Method(
         "any feasible task, drawn evenly",
-        lambda options: PolicySolver(lambda: RandomPolicy(options.seed), options.mask_rule, "random"),
+        lambda options: PolicySolver(lambda: RandomPolicy(options.seed), options, "random"),
     ),
     "nearest": Method(
         "the nearest feasible task",
-        lambda options: PolicySolver(NearestPolicy, options.mask_rule, "nearest"),
+        lambda options: PolicySolver(NearestPolicy, options, "nearest"),
     ),
     "edf": Method(
         "the feasible task with the earliest deadline",
-        lambda options: PolicySolver(EarliestDeadlinePolicy, options.mask_rule, "edf"),
+        lambda options: PolicySolver(EarliestDeadlinePolicy, options, "edf"),
     ),
 }
 """Methods that need no training. The policies that ship with the package are methods, too: see `method_names`."""
@@ -153,7 +154,7 @@ def make_solver(
     decode: Decode | None = None,
     samples: int = 64,
     budget: float | None = None,
-    mask_rule: MaskRule = "feasible",
+    mask_rule: MaskRule | None = None,
 ) -> Solver:
     """The method of that name, ready to plan.
 

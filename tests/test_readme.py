@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from mrta_zoo.io import read_scenario
+
 README = Path(__file__).parents[1] / "README.md"
 BLOCKS = re.findall(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
 
@@ -18,6 +20,14 @@ def test_there_are_examples() -> None:
 @pytest.mark.parametrize("block", BLOCKS, ids=range(len(BLOCKS)))
 def test_example_runs(block: str) -> None:
     exec(compile(block, str(README), "exec"), {"__name__": "readme"})
+
+
+@pytest.mark.parametrize("language", ["json", "csv"])
+def test_example_files_are_read(language: str, tmp_path: Path) -> None:
+    (text,) = re.findall(rf"```{language}\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+    (tmp_path / f"mission.{language}").write_text(text, encoding="utf-8")
+    scenario = read_scenario(tmp_path / f"mission.{language}")
+    assert (scenario.num_tasks, scenario.speed.tolist()) == (2, [1, 1.5])
 
 
 def test_links_lead_somewhere() -> None:

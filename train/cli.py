@@ -41,7 +41,7 @@ class TrainCommand:
     out: Path
     """Folder of the run."""
     resume: bool = False
-    """Go on with the run in --out; its configuration is kept."""
+    """Go on with the run in --out; its configuration is kept, so that no other flag is needed."""
     threads: int = 1
     """CPU threads; 0 leaves the choice to torch. At these sizes one is about as fast as two, and far faster on a busy
     machine. Results are the same only for the same number."""
@@ -71,7 +71,11 @@ def train_command(argv: Sequence[str]) -> None:
             )
     else:
         run, seconds = checkpoint.start(command.out, command.config), 0.0
-    train(run, command.out, seconds)
+    try:
+        train(run, command.out, seconds)
+    except KeyboardInterrupt:
+        print(f"go on with: mrta-zoo train --out {command.out} --resume", file=sys.stderr)
+        raise
 
 
 def parse(argv: Sequence[str]) -> TrainCommand:
@@ -81,7 +85,7 @@ def parse(argv: Sequence[str]) -> TrainCommand:
         raise ConfigError(f"there is no preset {preset!r}; expected one of {', '.join(PRESETS)}")
     out = _peek(argv, "--out")
     config = PRESETS[preset]
-    if "--resume" in argv and out and "--help" not in argv:
+    if "--resume" in argv and out and not {"--help", "-h"} & set(argv) and _peek(argv, "--preset") is None:
         config = checkpoint.saved_config(Path(out))
     default = TrainCommand(preset=preset, out=Path(out) if out else tyro.MISSING, config=config)
     return tyro.cli(
@@ -106,6 +110,14 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
 
     console = console or Console(stderr=True)
     config = run.config
+    parameters = sum(parameter.numel() for parameter in run.network.parameters())
+    begins = f"goes on after update {run.update} of {config.updates}" if run.update else f"{config.updates} updates"
+    console.print(
+        f"{folder}: {begins} of {config.scenarios} x {config.samples} episodes on {run.device}, "
+        f"{parameters:,} parameters; validation on {config.validation_scenarios:,} scenarios",
+        highlight=False,
+        soft_wrap=True,
+    )
     begun = time.perf_counter() - seconds
     first = run.update
     per_update = config.scenarios * config.samples

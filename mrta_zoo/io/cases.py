@@ -10,6 +10,7 @@ from pathlib import Path
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.csv_format import read_table
 from mrta_zoo.io.files import read_scenario
+from mrta_zoo.io.json_format import is_other_json
 from mrta_zoo.io.source import StrPath, count, shown
 from mrta_zoo.scenario import Scenario
 
@@ -37,9 +38,9 @@ def read_cases(folder: StrPath) -> list[Case]:
     """All cases of a folder in natural order of their names (``a2`` before ``a10``).
 
     Cases are TAPTC task files ``group*/*.txt`` (agent files in ``agent/``), and ``*.json`` and ``*.csv``
-    scenarios in the folder itself. If there is a ``reference.csv`` with columns ``case,tasks,robots`` and one
-    for each method, its whole numbers of completed tasks become the references; rows of other cases are
-    passed over, and a cell may be empty.
+    scenarios in the folder itself. JSON files of this package that are no scenarios, such as plans, are passed
+    over. If there is a ``reference.csv`` with columns ``case,tasks,robots`` and one for each method, its whole
+    numbers of completed tasks become the references; rows of other cases are passed over, and a cell may be empty.
 
     Raises:
         ScenarioError: if there is no such folder, it holds no case, two cases share a name, or a file is
@@ -56,7 +57,7 @@ def read_cases(folder: StrPath) -> list[Case]:
     sources: dict[str, Path] = {}
     scenarios: dict[str, Scenario] = {}
     for path in paths:
-        if path.name == REFERENCE_FILE or path.name.startswith("."):
+        if path.name == REFERENCE_FILE or path.name.startswith(".") or is_other_json(path):
             continue
         scenario = read_scenario(path)
         if scenario.name in sources:

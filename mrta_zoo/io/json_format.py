@@ -117,6 +117,21 @@ def read_json_part(path: StrPath) -> Part:
     )
 
 
+def is_other_json(path: Path) -> bool:
+    """Whether a JSON file is one of this package's that says itself to be no scenario, such as a plan."""
+    if path.suffix != ".json":
+        return False
+    try:
+        head = msgspec.json.decode(path.read_bytes(), type=_Head)
+    except (OSError, msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
+        return False  # the reader will say what is wrong with it
+    return head.format.startswith("mrta_zoo.") and head.format != "mrta_zoo.scenario"
+
+
+class _Head(msgspec.Struct):
+    format: str = ""
+
+
 def write_json(scenario: Scenario, path: StrPath) -> None:
     """Write a scenario, exactly, one task or robot a line.
 

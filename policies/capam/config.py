@@ -20,6 +20,9 @@ class NetworkConfig:
         moments: P, highest order of the capsules' moments.
         decision_features: whether the decoder also sees decision-time features of each task, such as travel time
             and slack (`mrta_zoo.policies.capam.decision_features`); ours, not the paper's.
+        node_features: what the encoder knows of each task, names in `mrta_zoo.policies.capam.node_features`. The
+            paper's are x, y and deadline; it allows more, and here come workload and two features that relate
+            deadlines and workloads to the size of the map.
         tanh_clip: scores are clipped to ± this, as in Kool et al. (2019).
     """
 
@@ -30,6 +33,14 @@ class NetworkConfig:
     hops: int = 2
     moments: int = 3
     decision_features: bool = False
+    node_features: tuple[str, ...] = (
+        "x",
+        "y",
+        "deadline",
+        "deadline_in_crossings",
+        "workload",
+        "workload_in_crossings",
+    )
     tanh_clip: float = 10.0
 
     def __post_init__(self) -> None:
@@ -40,5 +51,7 @@ class NetworkConfig:
             raise ConfigError(f"hops is {self.hops}; expected a whole number >= 0")
         if self.embedding % self.heads:
             raise ConfigError(f"embedding is {self.embedding}; expected a multiple of heads, {self.heads}")
+        if not self.node_features:
+            raise ConfigError("node_features is empty; expected at least one feature")
         if not self.tanh_clip > 0:
             raise ConfigError(f"tanh_clip is {self.tanh_clip}; expected a number > 0")

@@ -12,7 +12,11 @@ from mrta_zoo.policies.capam.capsule_encoder import CapsuleEncoder
 from mrta_zoo.policies.capam.config import NetworkConfig
 
 EncoderBuilder = Callable[[int, NetworkConfig], nn.Module]
-"""Builds, for a number of node features, a module ``(nodes, exists, graph) -> embeddings``; see `CapsuleEncoder`."""
+"""Builds, for a number of node features, a module ``(nodes, exists, graph) -> embeddings``.
+
+See `CapsuleEncoder.forward` for the shapes. Padding must neither change the embeddings of the tasks nor have any of its
+own but 0; `tests/policies/test_network.py` checks that, and more, of every encoder in `ENCODERS`.
+"""
 
 ENCODERS: dict[str, EncoderBuilder] = {
     "capsule": lambda features, c: CapsuleEncoder(features, c.embedding, c.layers, c.hops, c.moments),

@@ -13,9 +13,7 @@ from mrta_zoo.policies.capam.decision_features import FEATURES, Neighbourhood, d
 from mrta_zoo.policies.capam.decoder import AttentionDecoder, Keys
 from mrta_zoo.policies.capam.encoders import build_encoder
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
-
-NODE_FEATURES = 6
-"""x, y, deadline as a share of T, deadline in crossings, workload as a share of W, workload in crossings."""
+from mrta_zoo.policies.capam.node_features import node_features
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,14 +40,16 @@ class AllocationNetwork(nn.Module):
         super().__init__()
         self.config = config
         h = config.embedding
-        self.encoder = build_encoder(NODE_FEATURES, config)
+        self.encoder = build_encoder(len(config.node_features), config)
         self.context = Context(h)
         self.decoder = AttentionDecoder(h, config.heads, config.tanh_clip)
         self.pair = PairScore(h, config.heads) if config.decision_features else None
 
     def encode(self, tasks: Tasks) -> Encoding:
         """Embed the tasks; once a mission."""
-        embeddings = self.encoder(node_features(tasks), tasks.exists, graph_properties(tasks))
+        embeddings = self.encoder(
+            node_features(tasks, self.config.node_features), tasks.exists, graph_properties(tasks)
+        )
         near = Neighbourhood.of(tasks) if self.pair else None
         return Encoding(tasks, self.decoder.keys(embeddings), near)
 
@@ -116,19 +116,6 @@ class PairScore(nn.Module):
         out = self.out(hidden)
         duration = features[..., 0] + features[..., 1]
         return out[..., 1:], out[..., 0] - self.log_beta.exp() * duration
-
-
-def node_features(tasks: Tasks) -> Tensor:
-    """(S, N, 6) node features, see `NODE_FEATURES`. To add one, widen that and stack it here."""
-    horizon, work_unit = tasks.horizon[:, None], tasks.work_unit[:, None]
-    columns = (
-        *tasks.xy.unbind(-1),
-        tasks.deadline,
-        tasks.deadline * horizon / 4,  # 4: deadlines lie some 2 to 6 crossings ahead
-        tasks.workload,
-        tasks.workload * work_unit,
-    )
-    return torch.stack(columns, -1)
 
 
 def graph_properties(tasks: Tasks) -> Tensor:

@@ -103,10 +103,8 @@ def test_the_registry_makes_both_forms():
 
 def test_import_is_light_and_registers():
     code = """
-import sys, time
-start = time.perf_counter()
+import sys
 import mrta_zoo
-print(time.perf_counter() - start)
 assert not {"torch", "matplotlib", "scipy"} & set(sys.modules), "a heavy module was imported"
 assert "mrta_zoo.mrta_v0" not in sys.modules
 import importlib, warnings
@@ -116,14 +114,8 @@ from mrta_zoo import mrta_v0
 mrta_v0.env(); mrta_v0.parallel_env()
 assert not {"torch", "matplotlib", "scipy"} & set(sys.modules), "a heavy module was imported"
 """
-    times = []
-    for _ in range(3):  # the best of three, for the machine may be busy
-        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
-        times.append(float(done.stdout))
-        if times[-1] < 0.5:
-            break
-    assert min(times) < 0.5
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 def test_default_sizes():

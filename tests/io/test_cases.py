@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from mrta_zoo import Scenario
+from mrta_zoo import Plan, Scenario
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.io import read_cases, write_scenario
+from mrta_zoo.io import read_cases, write_plan, write_scenario
 
 
 def scenario(name: str, tasks: int = 3) -> Scenario:
@@ -111,3 +111,9 @@ def test_malformed_case_is_named(folder: Path) -> None:
     (folder / "c5.json").write_text("{")
     with pytest.raises(ScenarioError, match=r"c5\.json, line 1"):
         read_cases(folder)
+
+
+def test_plans_among_the_scenarios_are_passed_over(tmp_path: Path) -> None:
+    write_scenario(Scenario([[1, 1]], [5], [1], [[0, 0]], [1]), tmp_path / "one.json")  # type: ignore[arg-type]
+    write_plan(Plan.of([[0]]), tmp_path / "plan.json")
+    assert [case.scenario.num_tasks for case in read_cases(tmp_path)] == [1]

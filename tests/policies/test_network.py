@@ -14,6 +14,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import Mixture, TaptcGenerator, UniformGenerator
 from mrta_zoo.policies.capam.capsule_encoder import CapsuleEncoder, scaled_laplacian
 from mrta_zoo.policies.capam.config import NetworkConfig
+from mrta_zoo.policies.capam.encoders import ENCODERS
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
 from mrta_zoo.policies.neural import NeuralPolicy
 from mrta_zoo.policies.rollout import roll_out
@@ -24,9 +25,10 @@ from mrta_zoo.verify import verify
 
 SMALL = NetworkConfig(embedding=32, heads=4)
 CONFIGS = {
-    "capam": SMALL,
+    **{name: replace(SMALL, encoder=name) for name in ENCODERS},
     "capam-p1-k3-2layers": replace(SMALL, moments=1, hops=3, layers=2),
-    "am": replace(SMALL, encoder="attention", layers=2),
+    "am-2layers": replace(SMALL, encoder="attention", layers=2),
+    "only-the-paper's-features": replace(SMALL, node_features=("x", "y", "deadline")),
     "capam-plus": replace(SMALL, decision_features=True),
     "am-plus": replace(SMALL, encoder="attention", decision_features=True),
 }
@@ -174,6 +176,40 @@ def test_the_encoder_runs_once_a_mission() -> None:
     assert len(calls) == 4
 
 
+@pytest.mark.parametrize("encoder", ENCODERS)
+def test_embeddings_of_padding_are_zero(encoder: str) -> None:
+    module = ENCODERS[encoder](3, SMALL)
+    exists = torch.tensor([[True, True, False]])
+    embedded = module(torch.rand(1, 3, 3), exists, torch.rand(1, 3, 3))
+    assert embedded.shape == (1, 3, SMALL.embedding)
+    assert (embedded[~exists] == 0).all()
+    assert (embedded[exists] != 0).any()
+
+
+def test_unknown_node_feature_is_told() -> None:
+    (scenario,) = draw(1)
+    network = build_network(replace(SMALL, node_features=("x", "priority")), "shared", 1, seed=0)
+    with pytest.raises(ConfigError, match=r"node_features has 'priority'; expected some of x, y, deadline"):
+        roll_out(network, ScenarioBatch.of([scenario]))
+
+
+def test_a_policy_serves_the_parallel_form_too() -> None:
+    policy = NeuralPolicy(network_of(SMALL), PolicyInfo(network=SMALL))
+    env = mrta_v0.parallel_env(generator=GENERATOR, max_tasks=20, max_robots=4, on_illegal="raise")
+    observations, _ = env.reset(seed=0)
+    while env.agents:
+        observations, *_ = env.step({agent: policy.act(observations[agent]) for agent in env.agents})
+    assert env.mission.done
+    assert env.mission.completed() > 0
+
+
+def test_a_flat_observation_is_refused_in_a_sentence() -> None:
+    env = mrta_v0.env(observation="flat")
+    env.reset(seed=0)
+    with pytest.raises(ConfigError, match='observation="dict"'):
+        NeuralPolicy(network_of(SMALL), PolicyInfo(network=SMALL)).act(env.last()[0])
+
+
 def test_laplacian_of_two_tasks_by_hand() -> None:
     # δ = (0, 0, 0) and (0.6, 0.8, 0): distance 1, so A_01 = 1/(1 + 1) = 0.5, both degrees are 0.5;
     # D − A = [[0.5, −0.5], [−0.5, 0.5]], over the largest degree 0.5: [[1, −1], [−1, 1]]. The third is padding.
@@ -238,6 +274,7 @@ def test_initial_weights_come_from_the_seed_alone() -> None:
     [
         ({"encoder": "graph"}, r"encoder is 'graph'; expected one of capsule, attention"),
         ({"embedding": 30}, r"embedding is 30; expected a multiple of heads, 8"),
+        ({"node_features": ()}, r"node_features is empty; expected at least one feature"),
         ({"moments": 0}, r"moments is 0; expected a whole number >= 1"),
         ({"hops": -1}, r"hops is -1; expected a whole number >= 0"),
         ({"tanh_clip": 0.0}, r"tanh_clip is 0.0; expected a number > 0"),

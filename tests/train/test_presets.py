@@ -57,6 +57,14 @@ def test_resume_keeps_the_configuration(tmp_path: Path) -> None:
         train_command(["--out", str(tmp_path), "--resume", "--updates", "5"])
 
 
+def test_resume_with_another_preset_is_refused(tmp_path: Path) -> None:
+    from mrta_zoo.train import checkpoint
+
+    checkpoint.start(tmp_path, PRESETS["smoke"])
+    with pytest.raises(ConfigError, match="--resume keeps the run's configuration"):
+        train_command(["--out", str(tmp_path), "--resume", "--preset", "fast"])
+
+
 def test_impossible_value_is_told_with_exit_code_2(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as stopped:
         train_command(["--preset", "smoke", "--out", "x", "--heads", "7"])
