@@ -1,0 +1,89 @@
+"""Learning curves of training runs as a picture.
+
+``python -m mrta_zoo.eval.plot_history runs/a runs/b --out curves.png``
+"""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+from matplotlib.figure import Figure
+
+from mrta_zoo.errors import ConfigError
+
+
+@dataclass(frozen=True, slots=True)
+class LearningCurve:
+    """Validation completion of one run.
+
+    Attributes:
+        name: what the legend calls it.
+        episodes: missions sampled so far, for each validation.
+        completion: greedy completion rate then, 0..1.
+    """
+
+    name: str
+    episodes: tuple[int, ...]
+    completion: tuple[float, ...]
+
+
+def read_history(path: Path) -> LearningCurve:
+    """The curve in a run's folder, or in a copy of its history.csv.
+
+    Raises:
+        ConfigError: if there is none, or it is malformed.
+    """
+    file = path / "history.csv" if path.is_dir() else path
+    try:
+        with file.open(newline="", encoding="utf-8") as lines:
+            rows = list(csv.DictReader(lines))
+        return LearningCurve(
+            path.stem, tuple(int(row["episodes"]) for row in rows), tuple(float(row["completion"]) for row in rows)
+        )
+    except OSError as error:
+        raise ConfigError(f"{file}: {(error.strerror or str(error)).lower()}; expected a run's history.csv") from None
+    except (KeyError, ValueError) as error:
+        raise ConfigError(f"{file}: not a run's history.csv ({error})") from None
+
+
+def draw_history(curves: list[LearningCurve]) -> Figure:
+    """Completion in percent against episodes, one line a run."""
+    figure = Figure(figsize=(8, 4.2), layout="constrained")
+    axes = figure.add_subplot()
+    for curve, colour in zip(
+        curves, ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9") * 9, strict=False
+    ):
+        axes.plot(
+            curve.episodes, [100 * each for each in curve.completion], label=curve.name, color=colour, linewidth=1.5
+        )
+    axes.set_xlabel("episodes sampled")
+    axes.set_ylabel("validation completion, %")
+    axes.xaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")
+    axes.grid(color="#e0e4e8")
+    axes.set_axisbelow(True)
+    axes.legend(frameon=False, loc="lower right")
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    return figure
+
+
+def main(
+    runs: Annotated[tuple[Path, ...], tyro.conf.Positional],
+    /,
+    out: Path,
+) -> None:
+    """Draw the learning curves of training runs.
+
+    Args:
+        runs: folders of runs, or copies of their history.csv.
+        out: the picture, .png, .svg or .pdf.
+    """
+    draw_history([read_history(run) for run in runs]).savefig(out, dpi=130)
+
+
+if __name__ == "__main__":
+    tyro.cli(main)
