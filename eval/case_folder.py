@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Literal, get_args
 
-from mrta_zoo.errors import ConfigError
+from mrta_zoo.errors import ConfigError, ScenarioError
 from mrta_zoo.io import write_scenario, write_taptc
 from mrta_zoo.scenario import Scenario
 
@@ -24,7 +24,7 @@ def write_case_folder(scenarios: Iterable[Scenario], folder: Path, file_format: 
 
     Args:
         scenarios: what to write, each with a name of its own that can be a file's.
-        folder: must not exist yet, or be empty.
+        folder: must not exist yet, or be empty; it may be the current one, or a link to one.
         file_format: of the files.
 
     Raises:
@@ -38,18 +38,24 @@ def write_case_folder(scenarios: Iterable[Scenario], folder: Path, file_format: 
             raise ConfigError(f"{folder} is not empty; expected a new or empty folder")
         if folder.exists() and not folder.is_dir():
             raise ConfigError(f"{folder} is a file; expected a new or empty folder")
-        folder.parent.mkdir(parents=True, exist_ok=True)
-        # Beside its final place, so that it can be renamed at the end.
-        partial = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", dir=folder.parent))
+        final = Path(os.path.realpath(folder))
+        new = not final.is_dir()
+        # Inside the folder or, if it is new, beside its place: where renaming cannot leave the file system.
+        workshop = final.parent if new else final
+        workshop.mkdir(parents=True, exist_ok=True)
+        partial = Path(tempfile.mkdtemp(prefix=".unfinished.", dir=workshop))
     except OSError as error:
         raise ConfigError(f"{folder} cannot be made: {(error.strerror or str(error)).lower()}") from None
     try:
         partial.chmod(0o777 & ~_umask())
         for scenario in scenarios:
             _write_case(scenario, partial, file_format)
-        if folder.is_dir():
-            folder.rmdir()
-        os.replace(partial, folder)
+        if new:
+            os.replace(partial, final)
+        else:
+            _move_all(partial, final)
+    except ScenarioError as error:  # it names the file where it is now
+        raise ScenarioError(str(error).replace(str(partial), str(folder))) from None
     except OSError as error:
         raise ConfigError(f"{folder} cannot be written: {(error.strerror or str(error)).lower()}") from None
     finally:
@@ -64,6 +70,19 @@ def _write_case(scenario: Scenario, folder: Path, file_format: CaseFormat) -> No
         (folder / part).mkdir(exist_ok=True)
     file = f"{scenario.name}.txt"
     write_taptc(scenario, folder / "group1" / file, folder / "agent" / file)
+
+
+def _move_all(source: Path, target: Path) -> None:
+    """Move what is in one folder into another, all of it or nothing."""
+    moved: list[Path] = []
+    try:
+        for path in sorted(source.iterdir()):
+            os.replace(path, target / path.name)
+            moved.append(target / path.name)
+    except BaseException:
+        for path in moved:
+            os.replace(path, source / path.name)
+        raise
 
 
 def _umask() -> int:

@@ -9,9 +9,9 @@ from typing import Annotated
 
 from tyro.conf import Positional, arg
 
-from mrta_zoo.errors import ConfigError
+from mrta_zoo.errors import ConfigError, ScenarioError
 from mrta_zoo.eval.console import progress_bar, results_console
-from mrta_zoo.eval.destination import check_destination
+from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import optional, parse
 from mrta_zoo.eval.rows import Row, write_rows
 from mrta_zoo.eval.runner import Solved, evaluate, solve_and_score
@@ -19,6 +19,7 @@ from mrta_zoo.eval.schedule import schedule_table, totals
 from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import Case, PlanScore, ScheduledTask, read_cases, read_scenario, write_plan
+from mrta_zoo.io.taptc import find_agent_file
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import Decode, make_solver
 from mrta_zoo.rules import MaskRule
@@ -96,6 +97,8 @@ def solve_command(argv: Sequence[str]) -> None:
 
         check_destination(command.plot)
         check_picture_format(command.plot)
+    outputs = {"--out": command.out, "--plot": command.plot}
+    check_distinct(outputs, {"the task file": command.taskfile, "the agent file": agent_file(command)})
     scenario = read_scenario(command.taskfile, command.agents)
     solver = command.planning.solver(command.method)
     with cpu_threads(command.planning.threads):
@@ -115,6 +118,16 @@ def solve_command(argv: Sequence[str]) -> None:
     for path, what in ((command.out, "plan"), (command.plot, "picture")):
         if path:
             console.print(f"{what} written to {path}", soft_wrap=True)
+
+
+def agent_file(command: Solve) -> Path | None:
+    """The file that the robots are read from, None if it is the task file."""
+    if command.agents is not None or command.taskfile.suffix.lower() in (".json", ".csv"):
+        return command.agents
+    try:
+        return find_agent_file(command.taskfile)
+    except ScenarioError:  # the reader has more to say: maybe there is no task file either
+        return None
 
 
 def write_solved(solved: Solved, path: Path) -> None:

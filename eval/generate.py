@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from tyro.conf import arg
 
+from mrta_zoo.bounds import check_seed
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.case_folder import CaseFormat, write_case_folder
 from mrta_zoo.eval.console import results_console
@@ -69,8 +70,7 @@ def generate_command(argv: Sequence[str]) -> None:
     command = parse(Generate, argv, "generate")
     if command.count < 1:
         raise ConfigError(f"count is {command.count}; expected a whole number >= 1")
-    if command.seed < 0:
-        raise ConfigError(f"seed is {command.seed}; expected a whole number >= 0")
+    check_seed(command.seed)
     given: dict[str, Any] = {"group": command.group, "map_size": _bounds(command.map)}
     for name in ("tasks", "robots", "workload", "capacity", "deadline", "speed"):
         given[name] = _bounds(getattr(command, name))

@@ -8,16 +8,19 @@ from contextlib import contextmanager
 
 from mrta_zoo.errors import ConfigError
 
+MOST_THREADS = 1024
+"""More than any machine has use for; torch fails with as many threads as the system cannot start."""
+
 
 @contextmanager
 def cpu_threads(count: int) -> Iterator[None]:
-    """Within it torch uses `count` threads, >= 1. Without torch, or before it is imported, nothing happens.
+    """Within it torch uses `count` threads, 1 to `MOST_THREADS`. Without torch, or before its import, nothing happens.
 
     Raises:
         ConfigError: if the number is out of range.
     """
-    if count < 1:
-        raise ConfigError(f"threads is {count}; expected a whole number >= 1")
+    if not 1 <= count <= MOST_THREADS:
+        raise ConfigError(f"threads is {count}; expected a whole number from 1 to {MOST_THREADS}")
     torch = sys.modules.get("torch")  # heuristics need none, so it is not imported for them
     if torch is None:
         yield

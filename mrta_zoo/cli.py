@@ -69,20 +69,32 @@ def main(argv: Sequence[str] | None = None) -> int:
         argv: the arguments; by default those of the process.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
-    for stream in (sys.stdout, sys.stderr):
-        if hasattr(stream, "reconfigure"):  # a name that the terminal's encoding lacks must not end in a traceback
-            stream.reconfigure(errors="replace")
+    _prepare_streams()
     try:
-        return _dispatch(arguments)
+        try:
+            return _dispatch(arguments)
+        finally:
+            sys.stdout.flush()  # a full disk, or a reader that has gone away, shows here, not at exit
     except MrtaError as error:
-        print(f"error: {_one_line(str(error))}", file=sys.stderr)
-        return USER_ERROR
+        return _complain(str(error))
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
     except BrokenPipeError:  # the reader, such as `head`, has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _silence_stdout()
         return BROKEN_PIPE
+    except OSError as error:
+        _drop_stuck_output()
+        where = "the output" if error.filename is None else os.fsdecode(error.filename)
+        return _complain(f"{where}: {(error.strerror or str(error)).lower()}")
+    except MemoryError:
+        return _complain(
+            "not enough memory for this command; expected a smaller mission, or lower numbers in its options"
+        )
+    except RecursionError:
+        return _complain(
+            "this command's input is nested too deeply; expected a scenario, plan or policy of this package"
+        )
 
 
 def _dispatch(arguments: list[str]) -> int:
@@ -96,7 +108,6 @@ def _dispatch(arguments: list[str]) -> int:
         print(f"mrta-zoo {__version__}")
     elif name in COMMANDS:
         COMMANDS[name][1](rest)
-        sys.stdout.flush()  # a reader that has gone away shows here, not at exit
     else:
         kind = "option" if name.startswith("-") else "command"
         print(f"error: there is no {kind} {name!r}; expected one of {', '.join(COMMANDS)}", file=sys.stderr)
@@ -120,5 +131,30 @@ def _help() -> str:
     )
 
 
-def _one_line(text: str) -> str:
-    return " ".join(text.split())
+def _prepare_streams() -> None:
+    """Make standard output and error fit for any text, also where the shell has closed them."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:  # by >&-
+            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115  (open until exit)
+        stream = getattr(sys, name)
+        if hasattr(stream, "reconfigure"):  # a name that the terminal's encoding lacks must not end in a traceback
+            stream.reconfigure(errors="replace")
+
+
+def _complain(sentence: str) -> int:
+    """Print an error as one line in which nothing steers the terminal, and give the exit code."""
+    line = " ".join(sentence.split())
+    print("error:", "".join(c if c.isprintable() else ascii(c)[1:-1] for c in line), file=sys.stderr)
+    return USER_ERROR
+
+
+def _drop_stuck_output() -> None:
+    """Keep what cannot be written to standard output from being tried again, and complained about, at exit."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        _silence_stdout()
+
+
+def _silence_stdout() -> None:
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

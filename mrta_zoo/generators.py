@@ -7,12 +7,12 @@ bounds and an equally seeded generator give equal scenarios.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol, get_args
 
 import numpy as np
 
+from mrta_zoo.bounds import as_count_range, as_range, as_sides, is_number
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.scenario import FloatArray, Scenario
 
@@ -34,41 +34,6 @@ def _draw(rng: np.random.Generator, bounds: tuple[float, float], count: int) -> 
     if low == high:
         return np.full(count, low)
     return low + (high - low) * rng.random(count)
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, (int, float, np.number)) and not isinstance(value, bool) and bool(np.isfinite(value))
-
-
-def _pair(value: Any) -> tuple[Any, Any] | None:
-    """(lowest, highest) from a pair or from a single number, None if it is neither."""
-    if _is_number(value):
-        return value, value
-    if isinstance(value, Sequence) and len(value) == 2 and all(_is_number(end) for end in value):
-        return value[0], value[1]
-    return None
-
-
-def _range(field: str, value: Any, positive: bool) -> tuple[float, float]:
-    pair = _pair(value)
-    if pair is None or pair[0] > pair[1] or pair[0] < 0 or (positive and pair[0] == 0):
-        bound = "> 0" if positive else ">= 0"
-        raise ConfigError(f"{field} is {value!r}; expected (lowest, highest), finite numbers {bound} in order")
-    return float(pair[0]), float(pair[1])
-
-
-def _count_range(field: str, value: Any) -> tuple[int, int]:
-    pair = _pair(value)
-    if pair is None or pair[0] > pair[1] or pair[0] < 1 or any(end != int(end) for end in pair):
-        raise ConfigError(f"{field} is {value!r}; expected (lowest, highest), whole numbers >= 1 in order")
-    return int(pair[0]), int(pair[1])
-
-
-def _sides(value: Any) -> tuple[float, float]:
-    pair = _pair(value)
-    if pair is None or pair[0] <= 0 or pair[1] <= 0:
-        raise ConfigError(f"map_size is {value!r}; expected (width, height), finite numbers > 0")
-    return float(pair[0]), float(pair[1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,11 +65,11 @@ class UniformGenerator:
 
     def __post_init__(self) -> None:
         for field in ("tasks", "robots"):
-            object.__setattr__(self, field, _count_range(field, getattr(self, field)))
+            object.__setattr__(self, field, as_count_range(field, getattr(self, field)))
         for field in ("deadline", "capacity", "speed"):
-            object.__setattr__(self, field, _range(field, getattr(self, field), positive=True))
-        object.__setattr__(self, "workload", _range("workload", self.workload, positive=False))
-        object.__setattr__(self, "map_size", _sides(self.map_size))
+            object.__setattr__(self, field, as_range(field, getattr(self, field), positive=True))
+        object.__setattr__(self, "workload", as_range("workload", self.workload, positive=False))
+        object.__setattr__(self, "map_size", as_sides(self.map_size))
 
     def __call__(self, rng: np.random.Generator, name: str = "uniform") -> Scenario:
         """Draw one scenario, using no other randomness than `rng`."""
@@ -170,9 +135,9 @@ class TaptcGenerator:
 
     def __post_init__(self) -> None:
         for field in ("tasks", "robots"):
-            object.__setattr__(self, field, _count_range(field, getattr(self, field)))
-        object.__setattr__(self, "latest", _range("latest", self.latest, positive=True))
-        object.__setattr__(self, "map_size", _sides(self.map_size))
+            object.__setattr__(self, field, as_count_range(field, getattr(self, field)))
+        object.__setattr__(self, "latest", as_range("latest", self.latest, positive=True))
+        object.__setattr__(self, "map_size", as_sides(self.map_size))
         for field, allowed in (("group", DeadlineGroup), ("capacity", CapacityRule)):
             if getattr(self, field) not in get_args(allowed):
                 raise ConfigError(
@@ -180,7 +145,7 @@ class TaptcGenerator:
                 )
         given: Any = self.normal_share
         shares: tuple[Any, ...] = tuple(given) if isinstance(given, (tuple, list)) else (given,)
-        if not shares or not all(_is_number(share) and 0 <= share <= 1 for share in shares):
+        if not shares or not all(is_number(share) and 0 <= share <= 1 for share in shares):
             raise ConfigError(f"normal_share is {given!r}; expected one or more numbers from 0 to 1")
         object.__setattr__(self, "normal_share", tuple(float(share) for share in shares))
         for field, least in (
@@ -191,14 +156,14 @@ class TaptcGenerator:
         ):
             value = getattr(self, field)
             strict = field in ("slack_factor", "min_deadline")
-            if not _is_number(value) or value < least or (strict and value == least):
+            if not is_number(value) or value < least or (strict and value == least):
                 bound = f"{'>' if strict else '>='} {least:g}"
                 raise ConfigError(f"{field} is {value!r}; expected a finite number {bound}")
         # Redrawing soon ends only if the mean lies between the bounds even with the earliest D.
         earliest = float(np.floor(self.latest[0])) if self.integer else self.latest[0]
         if self.group != "tight":
             earliest *= self.slack_factor if self.group == "slack" else min(1.0, self.slack_factor)
-        if not _is_number(self.low) or not 0 <= self.low < earliest:
+        if not is_number(self.low) or not 0 <= self.low < earliest:
             raise ConfigError(f"low is {self.low!r}; expected a number >= 0 and < {earliest:g}, the earliest D")
         mean = (self.low + earliest) / 2
         most = float(np.floor(mean)) if self.integer else mean
@@ -275,7 +240,7 @@ class Mixture:
             raise ConfigError(
                 f"weights has {len(self.weights)} entries; expected {len(self.generators)}, one a generator"
             )
-        if not all(_is_number(weight) and weight >= 0 for weight in self.weights) or sum(self.weights) == 0:
+        if not all(is_number(weight) and weight >= 0 for weight in self.weights) or sum(self.weights) == 0:
             raise ConfigError(f"weights is {self.weights}; expected finite numbers >= 0, not all 0")
 
     def __call__(self, rng: np.random.Generator, name: str = "mixture") -> Scenario:

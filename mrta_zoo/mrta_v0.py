@@ -115,6 +115,7 @@ import numpy as np
 from gymnasium import spaces
 from pettingzoo import AECEnv
 
+from mrta_zoo.bounds import as_finite
 from mrta_zoo.errors import ActionError
 from mrta_zoo.mission import Mission
 from mrta_zoo.observation import FloatTable
@@ -137,7 +138,8 @@ def env(*, illegal_reward: float = -1.0, **options: Any) -> AECEnv[str, Any, Any
     Raises:
         ConfigError: if an option cannot be used.
     """
-    wrapped = IllegalActionWrapper(raw_env(**options), illegal_reward=illegal_reward)
+    reward = as_finite("illegal_reward", illegal_reward)
+    wrapped = IllegalActionWrapper(raw_env(**options), illegal_reward=reward)
     return OrderWrapper(ActionSpaceWrapper(wrapped))
 
 

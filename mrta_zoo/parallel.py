@@ -23,6 +23,7 @@ robots are free at the same time, the forms are decision for decision the same.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, ClassVar, get_args
 
 import numpy as np
@@ -31,6 +32,7 @@ from gymnasium import spaces
 from pettingzoo import ParallelEnv
 from pettingzoo.utils.env_logger import EnvLogger
 
+from mrta_zoo.bounds import as_finite
 from mrta_zoo.errors import ActionError
 from mrta_zoo.mission import Mission
 from mrta_zoo.observation import FloatTable
@@ -65,7 +67,7 @@ class ParallelMrtaEnv(ParallelEnv[str, Any, Any]):
         assert settings.max_tasks is not None
         self.noop = settings.max_tasks
         self.on_illegal = on_illegal
-        self.illegal_reward = float(illegal_reward)
+        self.illegal_reward = as_finite("illegal_reward", illegal_reward)
         self._world = World(settings, num_actions=settings.max_tasks + 1)
         self.render_mode = settings.render_mode
         self.possible_agents = list(self._world.names)
@@ -172,6 +174,8 @@ class ParallelMrtaEnv(ParallelEnv[str, Any, Any]):
 
     def _choices(self, actions: dict[str, Any]) -> dict[str, int]:
         """An action within the action space for every agent."""
+        if not isinstance(actions, Mapping):
+            raise ActionError(f"actions is {actions!r}; expected a dictionary with an action for each agent")
         for agent in actions:
             if agent not in self.agents:
                 there = ", ".join(self.agents[:10]) + (", …" if len(self.agents) > 10 else "")

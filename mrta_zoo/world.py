@@ -6,7 +6,7 @@ Knows robots by index and nothing of turns; `mrta_v0.raw_env` and `parallel.Para
 from __future__ import annotations
 
 import operator
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -189,11 +189,15 @@ class World:
 
 def _scenario_option(options: dict[str, Any] | None) -> Scenario | None:
     """The scenario in the options of `reset`, if there is one."""
-    for option in options or {}:
+    if options is None:
+        return None
+    if not isinstance(options, Mapping):
+        raise ConfigError(f"reset's options is {options!r}; expected a dictionary such as {{'scenario': scenario}}")
+    for option in options:
         # PettingZoo's contract tests pass {"options": 1} to every environment, so that this key has to be let by.
         if option not in ("scenario", "options"):
             raise ConfigError(f"reset has no option {option!r}; it has 'scenario'")
-    scenario = (options or {}).get("scenario")
+    scenario = options.get("scenario")
     if scenario is not None and not isinstance(scenario, Scenario):
         raise ConfigError(f"reset's option 'scenario' is {scenario!r}; expected a mrta_zoo.Scenario")
     return scenario

@@ -65,7 +65,8 @@ class ActionSpaceWrapper(_DirectBooks, AssertOutOfBoundsWrapper[str, Any, Any]):
             space = self._innermost.action_spaces[agent]
             # The first two terms spare the usual action a longer look.
             inside = type(action) is int and 0 <= action < space.n
-            if not inside and not space.contains(action):
+            # True is an int to Python, and so to the space.
+            if not inside and (isinstance(action, bool) or not space.contains(action)):
                 raise OutOfBoundsError(
                     f"{agent} sent action {action!r}; expected a whole number from 0 to {space.n - 1}"
                 )

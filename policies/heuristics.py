@@ -65,7 +65,7 @@ class EarliestDeadlinePolicy:
         choices, tasks = _choices(observation, agent), observation["observation"]["tasks"]
         if choices[0] == len(tasks):
             return int(choices[0])
-        return int(_nearest(observation, _least(choices, tasks[choices, _DEADLINE]))[0])
+        return int(_nearest(observation, _least(choices, tasks[choices, _DEADLINE], tie=0.0))[0])
 
 
 def _choices(observation: Observation, agent: str) -> Indices:
@@ -86,7 +86,7 @@ def _nearest(observation: Observation, tasks: Indices) -> Indices:
     return _least(tasks, np.hypot(places[:, _X] - ego[_EGO_X], places[:, _Y] - ego[_EGO_Y]))
 
 
-def _least(tasks: Indices, values: npt.NDArray[np.floating]) -> Indices:
-    """Those of `tasks` whose value is the least, up to `TIE`."""
-    least: Indices = tasks[values <= values.min() + TIE]
+def _least(tasks: Indices, values: npt.NDArray[np.floating], tie: float = TIE) -> Indices:
+    """Those of `tasks` whose value is the least, up to `tie`."""
+    least: Indices = tasks[values <= values.min() + tie]
     return least

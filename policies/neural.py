@@ -14,16 +14,21 @@ import torch
 
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.observation import Observation
+from mrta_zoo.observation import MISSION_FEATURES, TASK_FEATURES, Observation
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
-from mrta_zoo.policies.rollout import Rollout, roll_out
+from mrta_zoo.policies.rollout import NOT_FINITE, Rollout, roll_out
 from mrta_zoo.policies.sharing import Network
 from mrta_zoo.policies.weights import PolicyInfo, load_weights, pretrained_names, pretrained_path
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
 
 Decode = Literal["greedy", "sample"]
+
+UNCHANGING_TASK = [TASK_FEATURES.index(name) for name in ("x", "y", "deadline", "workload")]
+UNCHANGING_MISSION = [MISSION_FEATURES.index(name) for name in ("crossing_ratio", "work_ratio")]
+FIRST_SAMPLES = 4
+"""Missions drawn at first when there is a budget, to see how long they take."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +68,7 @@ class NeuralPolicy:
         self.name = name
         self.decode = decode
         self._generator = torch.Generator().manual_seed(seed)
-        self._encoded_for: bytes = b""
+        self._encoded_for: object = None
         self._encoding: Any = None
 
     def act(self, observation: Observation, agent: str = "") -> int:
@@ -89,11 +94,17 @@ class NeuralPolicy:
             observation = {**observation, "action_mask": mask[:tasks]}
         if not mask.any():
             raise ConfigError("this robot has nothing to choose; a policy acts only when its robot's turn comes")
-        unchanging = seen["tasks"][:, :4].tobytes() + seen["mission"][1:].tobytes()
+        unchanging = (
+            seen["tasks"][:, UNCHANGING_TASK].tobytes(),
+            seen["mission"][UNCHANGING_MISSION].tobytes(),
+            sum(parameter._version for parameter in self.network.parameters()),  # so that it may be in training
+        )
         if unchanging != self._encoded_for:
             self._encoding = self.network.encode(Tasks.of_observations([observation]))
             self._encoded_for = unchanging
         log_probs = self.network(self._encoding, Moments.of_observations([observation]))[0, 0]
+        if torch.isnan(log_probs).any():
+            raise ConfigError(NOT_FINITE)
         if self.decode == "greedy":
             action = int(log_probs.argmax())
         else:
@@ -116,7 +127,7 @@ class NeuralPolicy:
             scenario: what to plan.
             decode: "greedy", one pass; or "sample", the best of `samples` drawn missions and the greedy one.
             samples: missions drawn in one go.
-            budget: with "sample", go on drawing for about this many seconds instead of stopping after one go.
+            budget: with "sample", go on drawing for this many seconds instead of stopping after one go.
             mask_rule: what robots may choose; by default what the policy was trained under.
             seed: of the draws.
 
@@ -134,12 +145,18 @@ class NeuralPolicy:
         best = _Best()
         best.offer(roll_out(self.network, batch, mask_rule=rule, keep_plans=True))
         generator = torch.Generator().manual_seed(seed)
-        while decode == "sample":
-            best.offer(
-                roll_out(self.network, batch, samples=samples, generator=generator, mask_rule=rule, keep_plans=True)
-            )
-            if budget is None or time.perf_counter() >= deadline:
+        draws = samples if budget is None else min(samples, FIRST_SAMPLES)
+        while decode == "sample" and draws > 0:
+            begun = time.perf_counter()
+            if budget is not None and begun >= deadline:
                 break
+            best.offer(
+                roll_out(self.network, batch, samples=draws, generator=generator, mask_rule=rule, keep_plans=True)
+            )
+            if budget is None:
+                break
+            now = time.perf_counter()
+            draws = min(samples, int(draws * (deadline - now) / (now - begun)))
         return Plan(best.plan.routes, scenario.name, self.name)
 
     def solve_batch(self, scenarios: Sequence[Scenario], mask_rule: MaskRule | None = None) -> list[Plan]:

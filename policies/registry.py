@@ -6,6 +6,7 @@ Importing this imports no torch; learned methods load it when they are made.
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import resources
@@ -13,6 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, get_args
 
+from mrta_zoo.bounds import check_seed
 from mrta_zoo.errors import ConfigError, MissingExtraError
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.aec_loop import run_in_environment
@@ -32,7 +34,8 @@ class SolverOptions:
     """What any method may be told; each uses what it can.
 
     Attributes:
-        seed: of all draws, >= 0. Every scenario starts from it, so that a case has the same plan in any company.
+        seed: of all draws, from 0 to `bounds.MAX_SEED`. Every scenario starts from it, so that a case has the same plan
+            in any company.
         decode: how learned methods choose: "greedy", the likeliest task each time; "sample", the best of several drawn
             missions and the greedy one. None is "sample" if there is a budget, else "greedy".
         samples: missions that "sample" draws in one go, >= 1.
@@ -51,8 +54,7 @@ class SolverOptions:
     mask_rule: MaskRule | None = None
 
     def __post_init__(self) -> None:
-        if self.seed < 0:
-            raise ConfigError(f"seed is {self.seed}; expected a whole number >= 0")
+        check_seed(self.seed)
         if self.decode is None:
             object.__setattr__(self, "decode", "greedy" if self.budget is None else "sample")
         if self.decode not in get_args(Decode):
@@ -174,7 +176,7 @@ def make_solver(
     if name in METHODS:
         return METHODS[name].make(options)
     names = method_names()
-    if name not in names and not name.endswith(".safetensors") and not (name and Path(name).is_dir()):
+    if name not in names and not name.endswith(".safetensors") and not os.path.isdir(name):
         raise ConfigError(
             f"there is no method {name!r}; expected one of {', '.join(names)}, a .safetensors file, or the folder of a "
             "training run"

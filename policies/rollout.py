@@ -8,6 +8,7 @@ import torch
 from torch import Tensor
 
 from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
 from mrta_zoo.policies.sharing import Network
@@ -15,6 +16,11 @@ from mrta_zoo.rules import MaskRule
 
 SEGMENT = 12
 """Decisions between two looks at which missions are over; those are dropped, so that no work is done for them."""
+
+NOT_FINITE = (
+    "the network gives probabilities that are not finite: its weights are spoilt (did training diverge?), or the "
+    "scenario is beyond what float32 can hold"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +84,9 @@ def roll_out(
         mask_rule: what robots may choose.
         keep_plans: whether to return the plans.
         keep_segments: whether to return every decision, for learning.
+
+    Raises:
+        ConfigError: if the network gives probabilities that are not finite.
     """
     tasks = Tasks.of_batch(scenarios)
     encoding = network.encode(tasks)
@@ -105,9 +114,13 @@ def roll_out(
             under_way = under_way[keep]
             mission = mission.select(_rows(keep, samples))
             encoding = encoding.select(keep)
-        out.log_prob[_rows(under_way, samples)] += _run_segment(
+        log_prob = _run_segment(
             network, encoding, mission, samples, generator, under_way, out.segments if keep_segments else None
         )
+        # NaN would not only spoil the outcome: a mission that never takes a legal task would never end.
+        if not torch.isfinite(log_prob).all():
+            raise ConfigError(NOT_FINITE)
+        out.log_prob[_rows(under_way, samples)] += log_prob
     out.plans.extend(plan for plan in plans if plan is not None)
     return out
 
@@ -130,7 +143,7 @@ def _run_segment(
         if generator is None:
             action = log_probs.argmax(-1)
         else:
-            action = torch.multinomial(log_probs.exp(), 1, generator=generator).squeeze(1)
+            action = torch.multinomial(log_probs.exp().nan_to_num(1.0), 1, generator=generator).squeeze(1)
         live = ~mission.done
         log_prob += torch.where(live, log_probs.gather(1, action[:, None]).squeeze(1), 0.0)
         if segments is not None:

@@ -131,7 +131,7 @@ def read_json(path: Path, of: type[T]) -> T:
         return msgspec.convert(value, of)
     except FileNotFoundError:
         raise ConfigError(f"{path}: no such file; expected the JSON that belongs to the weights") from None
-    except (msgspec.MsgspecError, OSError, UnicodeDecodeError) as error:
+    except (msgspec.MsgspecError, OSError, UnicodeDecodeError, RecursionError) as error:
         raise ConfigError(f"{path}: {error}") from None
 
 

@@ -16,6 +16,7 @@ from real_cases import REAL, needs_real_cases
 
 from mrta_zoo import __version__
 from mrta_zoo.cli import COMMANDS, main
+from mrta_zoo.errors import ScenarioError
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.io import read_cases, read_plan, read_scenario, write_scenario
 from mrta_zoo.scenario import Scenario
@@ -206,6 +207,20 @@ def test_generate_takes_bounds(tmp_path: Path) -> None:
         (["solve", "CASE", "--method", "nearest", "--seed", "-1"], "seed is -1"),
         (["solve", "CASE", "--method", "nearest", "--samples", "0"], "samples is 0"),
         (["solve", "CASE", "--method", "nearest", "--threads", "0"], "threads is 0"),
+        (
+            ["solve", "CASE", "--method", "nearest", "--threads", "99999999999"],
+            "expected a whole number from 1 to 1024",
+        ),
+        (["solve", "CASE", "--method", "nearest", "--seed", "9" * 23], "expected a whole number from 0 to 922337"),
+        (["solve", "CASE", "--method", "nearest", "--out", "CASE"], ", which is the task file; expected a file of its"),
+        (["solve", "CASE", "--method", "nearest", "--out", "AGENTS"], ", which is the agent file; expected a file of"),
+        (
+            ["solve", "CASE", "--method", "nearest", "--out", "x.svg", "--plot", "./x.svg"],
+            "which is also --out; expected",
+        ),
+        (["solve", "x" * 300, "--method", "nearest"], "file name too long"),
+        (["solve", "CASE", "--method", "x" * 300], "there is no method 'xxx"),
+        (["eval", "--cases", "x" * 300, "--methods", "nearest"], "does not exist"),
         (["solve", "CASE", "--method", "nearest", "--agents", "absent.txt"], "absent.txt: there is no such file"),
         (["solve", "CASE", "--method", "nearest", "--out", "absent/plan.json"], "absent does not exist"),
         (["solve", "CASE", "--method", "nearest", "--out", "."], "is a folder"),
@@ -221,6 +236,10 @@ def test_generate_takes_bounds(tmp_path: Path) -> None:
         (["generate", "--out", "DATA"], "is not empty"),
         (["generate", "--out", "new", "--count", "0"], "count is 0"),
         (["generate", "--out", "new", "--seed", "-3"], "seed is -3"),
+        (["generate", "--out", "new", "--seed", "9" * 23], "expected a whole number from 0 to 9223372036854775807"),
+        (["generate", "--out", "new", "--tasks", "10000000000"], "whole numbers from 1 to 1000000"),
+        (["generate", "--out", "new", "--robots", "99999999999"], "whole numbers from 1 to 1000000"),
+        (["generate", "--out", "x" * 300], "file name too long"),
         (["generate", "--out", "new", "--robots", "7-2"], "robots is (7.0, 2.0)"),
         (["generate", "--out", "new", "--tasks", "many"], "tasks is 'many'"),
         (["generate", "--out", "new", "--deadline", "50-60"], "has no field 'deadline'"),
@@ -237,7 +256,10 @@ def test_mistakes_get_a_sentence(
     (tmp_path / "EMPTY").write_text("")
     (tmp_path / "HOLLOW").mkdir()
     task_file = str(next((cases / "group1").glob("*.txt")))
-    written = [word.replace("CASE", task_file).replace("DATA", str(cases)) for word in arguments]
+    agent_file = task_file.replace("group1", "agent")
+    written = [
+        word.replace("CASE", task_file).replace("AGENTS", agent_file).replace("DATA", str(cases)) for word in arguments
+    ]
     assert complaint in fails(capsys, written)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["EMPTY", "HOLLOW"]
 
@@ -307,3 +329,38 @@ def test_the_command_line_starts_light() -> None:
     code = "import sys, mrta_zoo.cli; print(*[m for m in ('torch', 'rich', 'tyro', 'matplotlib') if m in sys.modules])"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
     assert loaded.stdout.split() == []
+
+
+@pytest.mark.parametrize(
+    ("problem", "complaint"),
+    [
+        (PermissionError(13, "Permission denied", "some/file"), "error: some/file: permission denied\n"),
+        (OSError(28, "No space left on device"), "error: the output: no space left on device\n"),
+        (MemoryError(), "error: not enough memory for this command; expected"),
+        (RecursionError(), "nested too deeply; expected"),
+        (ScenarioError("a\x1b[31m.json: two\nlines"), "error: a\\x1b[31m.json: two lines\n"),
+    ],
+)
+def test_what_no_command_foresees(
+    problem: Exception, complaint: str, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    def fail(argv: list[str]) -> None:
+        raise problem
+
+    monkeypatch.setitem(COMMANDS, "solve", ("", fail))
+    assert complaint in fails(capsys, ["solve"])
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="there is no /dev/full")
+@pytest.mark.parametrize("arguments", ["solve CASE --method nearest", "solve --help", "--version"])
+def test_standard_output_that_is_full_or_closed(cases: Path, arguments: str) -> None:
+    task_file = next((cases / "group1").glob("*.txt"))
+    command = f"{sys.executable} -m mrta_zoo {arguments.replace('CASE', str(task_file))}"
+    for unbuffered in ("", "1"):
+        environment = {**os.environ, "PYTHONUNBUFFERED": unbuffered}
+        full = subprocess.run(
+            f"{command} > /dev/full", shell=True, capture_output=True, text=True, timeout=60, env=environment
+        )
+        assert (full.returncode, full.stderr) == (2, "error: the output: no space left on device\n")
+    closed = subprocess.run(f"{command} >&-", shell=True, capture_output=True, text=True, timeout=60)
+    assert (closed.returncode, closed.stderr) == (0, "")

@@ -188,3 +188,12 @@ def test_bad_fields(name: str, field: str, value: object) -> None:
     with pytest.raises(ConfigError, match=f"^{field} (is|has) .*expected|^{field} is .*need") as caught:
         make_generator(name, **{field: value})
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("value", [1_000_001, (1, 1e10)])
+def test_counts_have_a_greatest(value: object) -> None:
+    with pytest.raises(ConfigError, match=r"expected .*whole numbers from 1 to 1000000"):
+        make_generator("taptc", tasks=value)
+    assert make_generator("taptc", tasks=1_000_000) is not None
+    with pytest.raises(ConfigError, match=r"robots is 1000.*expected"):
+        make_generator("uniform", robots=10**400)

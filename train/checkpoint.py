@@ -54,14 +54,15 @@ def start(folder: Path, config: TrainConfig) -> Reinforce:
     Raises:
         ConfigError: if the folder already holds a run, or can't be written.
     """
-    if (folder / "config.json").exists():
+    if os.path.lexists(folder / "config.json") or os.path.lexists(folder / "checkpoints"):
         raise ConfigError(f"{folder} already holds a run; go on with it (--resume), or choose another folder")
+    run = Reinforce(config)  # before anything is written: it may refuse the configuration
     try:
         (folder / "checkpoints").mkdir(parents=True, exist_ok=True)
         write_json(folder / "config.json", config)
     except OSError as error:
         raise ConfigError(f"{folder}: can't write a run there ({error.strerror})") from None
-    return Reinforce(config)
+    return run
 
 
 def resume(folder: Path) -> tuple[Reinforce, float]:
@@ -83,6 +84,8 @@ def resume(folder: Path) -> tuple[Reinforce, float]:
     if isinstance(run.baseline, RolloutBaseline):
         path = at / "baseline.safetensors"
         load_state(run.baseline.network, read_tensors(path), path)
+    if state.update != numbers[-1] or state.update > config.updates:
+        raise ConfigError(f"{at / 'state.json'}: update is {state.update}; expected {numbers[-1]}, as the folder says")
     run.update = state.update
     run.history = list(state.history)
     return run, state.seconds
@@ -111,7 +114,7 @@ def save(folder: Path, run: Reinforce, seconds: float) -> None:
         write_tensors(partial / "baseline.safetensors", dict(run.baseline.network.state_dict()))
     write_json(partial / "state.json", RunState(run.update, round(seconds, 1), run.history))
     # Before the checkpoint counts: a run killed in between validates again and writes the same policy.
-    if run.history and run.history[-1].completion >= max(each.completion for each in run.history):
+    if run.history and run.history[-1] is run.best:
         save_policy(folder / "policy.safetensors", run.network, policy_info(run, seconds))
     _write_history(folder, run.history)
     shutil.rmtree(final, ignore_errors=True)

@@ -157,7 +157,7 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
                 highlight=False,
                 soft_wrap=True,
             )
-    best = max(run.history, key=lambda each: each.completion)
+    best = run.best
     console.print(
         f"Best validation completion {100 * best.completion:.2f} % at update {best.update}; "
         f"the policy is in {folder / 'policy.safetensors'}",

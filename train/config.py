@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Literal, get_args
 
@@ -82,7 +83,7 @@ class TrainConfig:
             if getattr(self, name) < 1:
                 raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 1")
         for name in ("learning_rate", "final_learning_rate", "clip_norm"):
-            if not getattr(self, name) > 0:
+            if not 0 < getattr(self, name) < math.inf:
                 raise ConfigError(f"{name} is {getattr(self, name)}; expected a number > 0")
         if self.max_robots < self.min_robots:
             raise ConfigError(f"max_robots is {self.max_robots}; expected at least min_robots, {self.min_robots}")
@@ -90,10 +91,12 @@ class TrainConfig:
             raise ConfigError(f"validation_scenarios is {self.validation_scenarios}; expected at least 2")
         if not 0 < self.significance < 1:
             raise ConfigError(f"significance is {self.significance}; expected a number between 0 and 1")
-        if self.entropy < 0:
+        if not 0 <= self.entropy < math.inf:
             raise ConfigError(f"entropy is {self.entropy}; expected a number >= 0")
-        if self.seed < 0:
-            raise ConfigError(f"seed is {self.seed}; expected a whole number >= 0")
+        if not 0 <= self.seed < 2**63:
+            raise ConfigError(f"seed is {self.seed}; expected a whole number >= 0 and < 2**63")
+        if self.normalise and self.scenarios * self.samples < 2:
+            raise ConfigError("normalise compares the missions of an update; scenarios x samples is 1, expected >= 2")
         for name, names in (
             ("baseline", BaselineName), ("objective", ObjectiveName), ("generator", GeneratorName),
             ("sharing", Sharing), ("mask_rule", MaskRule),

@@ -102,8 +102,17 @@ class Reinforce:
             self._validation = ScenarioBatch.of(drawn, self.device)
         return self._validation
 
+    @property
+    def best(self) -> Validation:
+        """The best validation so far: by completion, then cost, then the earliest. There must have been one."""
+        return max(self.history, key=lambda each: (each.completion, -each.cost))
+
     def step(self) -> Update:
-        """One gradient step."""
+        """One gradient step.
+
+        Raises:
+            ConfigError: if training has diverged; the weights are then as before.
+        """
         config = self.config
         rng = np.random.default_rng((config.seed, 0, self.update))
         scenarios = ScenarioBatch.of([self.generator(rng) for _ in range(config.scenarios)], self.device)
@@ -129,6 +138,11 @@ class Reinforce:
         surrogate = surrogate_loss(self.network, scenarios, rollout, advantage, config.entropy)
         surrogate.backward()
         norm = torch.nn.utils.clip_grad_norm_(self.network.parameters(), config.clip_norm)
+        if not torch.isfinite(norm):
+            raise ConfigError(
+                f"training diverged in update {self.update + 1}: the gradient is not finite; go on from an earlier "
+                "checkpoint with a smaller learning_rate"
+            )
         self.optimizer.step()
         self.update += 1
         return Update(
@@ -209,4 +223,6 @@ def surrogate_loss(
 def _device(name: str) -> torch.device:
     if name == "auto":
         return torch.device("cuda" if torch.cuda.is_available() else "cpu")
+    if name == "cuda" and not torch.cuda.is_available():
+        raise ConfigError("device is 'cuda', but torch finds no GPU; expected cpu or auto")
     return torch.device(name)

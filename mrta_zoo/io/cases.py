@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -11,7 +12,7 @@ from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.csv_format import read_table
 from mrta_zoo.io.files import read_scenario
 from mrta_zoo.io.json_format import is_other_json
-from mrta_zoo.io.source import StrPath, count, shown
+from mrta_zoo.io.source import StrPath, check_name, count, shown
 from mrta_zoo.scenario import Scenario
 
 REFERENCE_FILE = "reference.csv"
@@ -47,13 +48,17 @@ def read_cases(folder: StrPath) -> list[Case]:
             malformed.
     """
     root = Path(folder)
-    if not root.is_dir():
-        problem = "is not a folder" if root.exists() else "does not exist"
+    # os.path answers False where pathlib raises: without permission, or for a name that no file can have.
+    if not os.path.isdir(root):
+        problem = "is not a folder" if os.path.exists(root) else "does not exist"
         raise ScenarioError(f"{root} {problem}; expected a folder of cases")
     try:
+        os.listdir(root)  # glob would find nothing in a folder that may not be read
         paths = [path for pattern in ("group*/*.txt", "*.json", "*.csv") for path in sorted(root.glob(pattern))]
     except OSError as error:
-        raise ScenarioError(f"{root} cannot be listed: {error.strerror}; expected a folder of cases") from None
+        raise ScenarioError(
+            f"{root} cannot be listed: {(error.strerror or str(error)).lower()}; expected a folder of cases"
+        ) from None
     sources: dict[str, Path] = {}
     scenarios: dict[str, Scenario] = {}
     for path in paths:
@@ -70,7 +75,7 @@ def read_cases(folder: StrPath) -> list[Case]:
     if not scenarios:
         raise ScenarioError(f"{root} holds no cases; expected group*/*.txt (TAPTC), *.json or *.csv files")
     reference_path = root / REFERENCE_FILE
-    references = read_reference(reference_path, scenarios) if reference_path.exists() else {}
+    references = read_reference(reference_path, scenarios) if os.path.lexists(reference_path) else {}
     cases = []
     for name in sorted(scenarios, key=_natural):
         reference = references.get(name, {})
@@ -92,10 +97,12 @@ def read_reference(path: StrPath, scenarios: Mapping[str, Scenario]) -> dict[str
             f"{where}: header is {shown(','.join(header))}; expected case,tasks,robots and a column for each method"
         )
     for method in methods:
+        check_name(method, where, "method", ScenarioError)
         if not method or header.count(method) > 1:
             raise ScenarioError(f"{where}: method {shown(method)} is empty or appears twice; expected each once")
     references: dict[str, dict[str, int]] = {}
     for where, (name, *numbers) in rows:
+        check_name(name, where, "case", ScenarioError)
         if name in references:
             raise ScenarioError(f"{where}: case {shown(name)} appears twice; expected it once")
         tasks, robots = (

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.scenario import Scenario
+from mrta_zoo.io.source import check_name
+from mrta_zoo.scenario import BOUNDS, LARGEST, SMALLEST, Scenario
 
 
 class TaskRow(NamedTuple):
@@ -69,8 +70,10 @@ def assemble(main: Part, agents: Part | None) -> Scenario:
     whole side >= 1.
 
     Raises:
-        ScenarioError: if something is missing or said twice, or a place is outside the map.
+        ScenarioError: if something is missing or said twice, a number is too small or large, or a place is outside
+            the map.
     """
+    check_name(main.name, main.path, "the scenario's name", ScenarioError)
     if not main.tasks:
         raise ScenarioError(f"{main.path} has 0 tasks; expected at least one")
     if agents is None:
@@ -91,6 +94,9 @@ def assemble(main: Part, agents: Part | None) -> Scenario:
             f"{agents.path} has {len(agents.robots)} robots; expected {main.num_robots}, "
             f"the number in line 1 of {main.path}"
         )
+    for each in (main.map, *main.tasks, agents.map, *agents.robots):
+        if each is not None:
+            check_magnitudes(each)
     map_size = _map_size(main, agents)
     for rows in (main.tasks, agents.robots):
         check_inside(rows, map_size)
@@ -118,6 +124,15 @@ def _map_size(main: Part, agents: Part) -> tuple[float, float]:
     rows: tuple[TaskRow | RobotRow, ...] = (*main.tasks, *agents.robots)
     side = max(1.0, *(max(row.x, row.y) for row in rows))
     return (float(-(-side // 1)),) * 2  # ceil that stays a float, however large
+
+
+def check_magnitudes(row: TaskRow | RobotRow | MapRow) -> None:
+    """Raises ScenarioError for a number of a row that `Scenario` would refuse without saying where it stands."""
+    for what, value in zip(row._fields[1:], row[1:], strict=True):
+        may_be_zero = what in ("x", "y", "workload")
+        if not (may_be_zero or value >= SMALLEST) or value > LARGEST:
+            expected = f"a number from 0 to {LARGEST:g}" if may_be_zero else f"a number > 0{BOUNDS}"
+            raise ScenarioError(f"{row.where}: {what} is {value!r}; expected {expected}")
 
 
 def check_inside(rows: Sequence[TaskRow | RobotRow], map_size: tuple[float, float]) -> None:

@@ -17,6 +17,7 @@ MAX_BYTES = 64 * 2**20
 # What `float` accepts is wider: "1_0", "infinity", "nan", digits of other scripts.
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _COUNT = re.compile(r"[0-9]+")
+_CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f]")
 
 
 def read_text(path: StrPath, error: type[MrtaError]) -> str:
@@ -41,11 +42,16 @@ def read_text(path: StrPath, error: type[MrtaError]) -> str:
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as problem:
+        if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+            raise error(f"{path} looks like UTF-16; expected UTF-8 text") from None
         line = data.count(b"\n", 0, problem.start) + 1
         raise error(
             f"{path}, line {line}: byte 0x{data[problem.start]:02x} is not UTF-8; expected UTF-8 text"
         ) from None
     if "\0" in text:
+        start = data[:64]
+        if not any(start[::2]) or not any(start[1::2]):  # without byte order mark
+            raise error(f"{path} looks like UTF-16; expected UTF-8 text")
         line = text.count("\n", 0, text.index("\0")) + 1
         raise error(f"{path}, line {line}: holds the byte 0x00, as binary files do; expected text")
     text = text.replace("\r\n", "\n").replace("\r", "\n")
@@ -98,6 +104,16 @@ def count(text: str, where: str, what: str, error: type[MrtaError]) -> int:
     if not _COUNT.fullmatch(text) or len(text) > 18:
         raise error(f"{where}: {what} is {shown(text)}; expected a whole number >= 0")
     return int(text)
+
+
+def check_name(name: str, where: str, what: str, error: type[MrtaError]) -> None:
+    """Refuse a name that would steer the terminal it is printed on.
+
+    Raises:
+        error: if the name holds control characters.
+    """
+    if _CONTROL.search(name):
+        raise error(f"{where}: {what} is {shown(name)}; expected text without control characters")
 
 
 def shown(value: object, most: int = 40) -> str:

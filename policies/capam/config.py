@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from mrta_zoo.errors import ConfigError
@@ -44,14 +45,14 @@ class NetworkConfig:
     tanh_clip: float = 10.0
 
     def __post_init__(self) -> None:
-        for name in ("embedding", "heads", "layers", "moments"):
-            if getattr(self, name) < 1:
-                raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 1")
-        if self.hops < 0:
-            raise ConfigError(f"hops is {self.hops}; expected a whole number >= 0")
+        for name, least, most in (
+            ("embedding", 1, 4096), ("heads", 1, 256), ("layers", 1, 64), ("moments", 1, 16), ("hops", 0, 16),
+        ):  # fmt: skip
+            if not least <= getattr(self, name) <= most:
+                raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number from {least} to {most}")
         if self.embedding % self.heads:
             raise ConfigError(f"embedding is {self.embedding}; expected a multiple of heads, {self.heads}")
         if not self.node_features:
             raise ConfigError("node_features is empty; expected at least one feature")
-        if not self.tanh_clip > 0:
+        if not 0 < self.tanh_clip < math.inf:
             raise ConfigError(f"tanh_clip is {self.tanh_clip}; expected a number > 0")

@@ -42,8 +42,11 @@ class Neighbourhood:
         n = distance.shape[-1]
         blocked = ~tasks.exists[:, None, :] | torch.eye(n, dtype=torch.bool, device=distance.device)
         distance = distance.masked_fill(blocked, torch.inf)
-        nearest = distance.topk(min(NEIGHBOURS, n), dim=-1, largest=False)
-        return cls(nearest.indices, nearest.values)
+        # Ties, frequent on whole coordinates, are broken by what the tasks are, not by how they are numbered.
+        kind = tasks.deadline.double() + 2.7 * tasks.xy[..., 0] + 1.9 * tasks.xy[..., 1] + 1.3 * tasks.workload
+        key = distance.double() + 1e-6 * kind[:, None, :]
+        index = key.topk(min(NEIGHBOURS, n), dim=-1, largest=False).indices
+        return cls(index, distance.gather(2, index))
 
 
 def decision_features(tasks: Tasks, near: Neighbourhood, moments: Moments) -> Tensor:
@@ -84,7 +87,8 @@ def decision_features(tasks: Tasks, near: Neighbourhood, moments: Moments) -> Te
     free = moments.mask.gather(2, flat).view(s, g, n, j)
     possible = free & (next_finish <= next_deadline)
     next_gap = next_travel.expand_as(possible).masked_fill(~possible, FAR).amin(-1).clamp(max=FAR)
-    next_count = possible.float().mean(-1)
+    neighbours = torch.isfinite(near.distance).sum(-1)[:, None].clamp(min=1)
+    next_count = possible.sum(-1) / neighbours
 
     reach = travel.masked_fill(~moments.mask, 0.0).amax(-1, keepdim=True).expand_as(travel)
     columns = (

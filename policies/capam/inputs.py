@@ -15,7 +15,16 @@ import torch
 from torch import Tensor
 
 from mrta_zoo.batch import BatchMission, ScenarioBatch
-from mrta_zoo.observation import Observation, Scales
+from mrta_zoo.observation import MISSION_FEATURES, ROBOT_FEATURES, TASK_FEATURES, Observation, Scales
+
+MOST_CROSSINGS = 1000.0
+"""Where `Tasks.horizon` (above, and below at its inverse) and `Tasks.work_unit` saturate: beyond it deadlines either
+hardly bind or hardly leave room to move, and float32 would run out of digits."""
+MOST_SHARE = MOST_CROSSINGS / (1 + MOST_CROSSINGS)
+
+_TASK = {name: column for column, name in enumerate(TASK_FEATURES)}
+_ROBOT = {name: column for column, name in enumerate(ROBOT_FEATURES)}
+_MISSION = {name: column for column, name in enumerate(MISSION_FEATURES)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,8 +70,14 @@ class Tasks:
         seen = [observation["observation"] for observation in observations]
         tasks = torch.from_numpy(np.stack([each["tasks"] for each in seen])).to(device)
         mission = torch.from_numpy(np.stack([each["mission"] for each in seen])).to(device)
-        exists = tasks[..., 4:8].any(-1)
-        return _tasks(tasks[..., :2], tasks[..., 2], tasks[..., 3], exists, mission[:, 1], mission[:, 2])
+        return _tasks(
+            tasks[..., [_TASK["x"], _TASK["y"]]],
+            tasks[..., _TASK["deadline"]],
+            tasks[..., _TASK["workload"]],
+            tasks[..., [_TASK[status] for status in ("active", "assigned", "completed", "missed")]].any(-1),
+            mission[:, _MISSION["crossing_ratio"]],
+            mission[:, _MISSION["work_ratio"]],
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,15 +125,15 @@ class Moments:
         """The moments of S observers (G = 1)."""
         seen = [observation["observation"] for observation in observations]
         robots = torch.from_numpy(np.stack([each["robots"] for each in seen])).to(device)[:, None]
-        elapsed = torch.from_numpy(np.stack([each["mission"][:1] for each in seen])).to(device)
+        elapsed = torch.from_numpy(np.stack([each["mission"][[_MISSION["elapsed"]]] for each in seen])).to(device)
         mask = torch.from_numpy(np.stack([o["action_mask"] for o in observations])).to(device)[:, None]
         return cls(
-            xy=robots[..., :2],
-            capacity=robots[..., 2],
-            speed=robots[..., 3],
-            ready=robots[..., 4],
-            working=robots[..., 5] > 0,
-            ego=robots[..., 6].argmax(-1),
+            xy=robots[..., [_ROBOT["x"], _ROBOT["y"]]],
+            capacity=robots[..., _ROBOT["capacity"]],
+            speed=robots[..., _ROBOT["speed"]],
+            ready=robots[..., _ROBOT["ready"]],
+            working=robots[..., _ROBOT["working"]] > 0,
+            ego=robots[..., _ROBOT["is_ego"]].argmax(-1),
             elapsed=elapsed,
             mask=mask.bool(),
         )
@@ -147,6 +162,8 @@ def _scales(s: ScenarioBatch) -> Scales:
 
 
 def _tasks(xy: Tensor, deadline: Tensor, workload: Tensor, exists: Tensor, crossing: Tensor, work: Tensor) -> Tasks:
-    crossing_share = crossing / (1 - crossing)
-    work_share = work / (1 - work)
-    return Tasks(xy, deadline, workload, exists, 1 / crossing_share, work_share / crossing_share)
+    crossing = crossing.clamp(1 - MOST_SHARE, MOST_SHARE)
+    work = work.clamp(max=MOST_SHARE)
+    crossing_share, work_share = crossing / (1 - crossing), work / (1 - work)
+    work_unit = (work_share / crossing_share).clamp(max=MOST_CROSSINGS)
+    return Tasks(xy, deadline, workload, exists, 1 / crossing_share, work_unit)

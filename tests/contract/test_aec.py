@@ -536,6 +536,8 @@ def test_what_reset_is_given_is_checked(make):
     env.reset(options={"scenario": scenario})
     assert env.unwrapped.mission.scenario is scenario
     for arguments, message in (
+        ({"options": 5}, "reset's options is 5; expected a dictionary"),
+        ({"options": ["scenario"]}, "reset's options is .'scenario'.; expected a dictionary"),
         ({"options": {"scenari": scenario}}, "reset has no option 'scenari'; it has 'scenario'"),
         ({"options": {"scenario": "small"}}, "option 'scenario' is 'small'; expected a mrta_zoo.Scenario"),
         ({"options": {"scenario": small_scenario(0, tasks=9)}}, "has 9 tasks, but this environment has room for 8"),
@@ -552,3 +554,17 @@ def test_what_reset_is_given_is_checked(make):
     big = make(generator=lambda rng: small_scenario(rng, robots=9))
     with pytest.raises(ConfigError, match="has 9 robots, but this environment has room for 7"):
         big.reset(seed=0)
+
+
+@pytest.mark.parametrize("make", [mrta_v0.env, mrta_v0.parallel_env])
+@pytest.mark.parametrize("value", ["x", None, float("nan"), float("inf"), True, [1.0]])
+def test_the_illegal_reward_is_a_number(make, value):
+    with pytest.raises(ConfigError, match=r"illegal_reward is .*; expected a finite number"):
+        make(illegal_reward=value)
+
+
+def test_true_is_no_action():
+    for make in (mrta_v0.env, mrta_v0.raw_env):
+        env = started(make=make)
+        with pytest.raises(ActionError, match=r"robot_. sent action True; expected a whole number from 0 to 99"):
+            env.step(True)

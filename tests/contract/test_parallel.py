@@ -294,3 +294,11 @@ def test_any_agent_can_be_observed_and_the_state_is_the_aec_forms():
     assert np.array_equal(env.state(), aec.state())
     assert env.action_space("robot_0") is env.action_space("robot_0")
     assert env.observation_space("robot_0") is env.observation_space("robot_1")
+
+
+@pytest.mark.parametrize("actions", [None, 3, [0, 1]])
+def test_actions_come_in_a_dictionary(actions):
+    env = mrta_v0.parallel_env()
+    env.reset(seed=0)
+    with pytest.raises(ActionError, match=r"actions is .*; expected a dictionary with an action for each agent"):
+        env.step(actions)

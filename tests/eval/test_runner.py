@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import csv
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from rich.console import Console
 
-from mrta_zoo.errors import ConfigError, PlanError
+from mrta_zoo.errors import ConfigError, PlanError, ScenarioError
 from mrta_zoo.eval.case_folder import write_case_folder
 from mrta_zoo.eval.destination import check_destination
 from mrta_zoo.eval.rows import COLUMNS, Row, write_rows
@@ -172,3 +173,25 @@ def test_threads_are_put_back() -> None:
     assert torch.get_num_threads() == before
     with pytest.raises(ConfigError, match="threads is 0"), cpu_threads(0):
         pass
+
+
+def test_a_case_folder_in_the_current_one_and_through_a_link(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, written_as in (("here", "."), ("there", "../link")):
+        (tmp_path / name).mkdir()
+        if name == "there":
+            (tmp_path / "link").symlink_to(tmp_path / name)
+        monkeypatch.chdir(tmp_path / name)
+        write_case_folder([CASE.scenario], Path(written_as), "json")
+        assert [path.name for path in (tmp_path / name).iterdir()] == [f"{CASE.scenario.name}.json"]
+    assert (tmp_path / "link").is_symlink()
+
+
+@pytest.mark.parametrize("exists", [True, False])
+def test_errors_of_a_case_folder_name_its_final_place(tmp_path: Path, exists: bool) -> None:
+    folder = tmp_path / "cases"
+    if exists:
+        folder.mkdir()
+    fast = UniformGenerator(tasks=(2, 2), speed=2)(np.random.default_rng(0), "fast")
+    with pytest.raises(ScenarioError, match=re.escape(f"{folder}/group1/fast.txt: robot 0 has speed 2")):
+        write_case_folder([fast], folder, "taptc")
+    assert [path.name for path in tmp_path.rglob("*")] == ["cases"] * exists

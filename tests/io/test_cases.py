@@ -117,3 +117,15 @@ def test_plans_among_the_scenarios_are_passed_over(tmp_path: Path) -> None:
     write_scenario(Scenario([[1, 1]], [5], [1], [[0, 0]], [1]), tmp_path / "one.json")  # type: ignore[arg-type]
     write_plan(Plan.of([[0]]), tmp_path / "plan.json")
     assert [case.scenario.num_tasks for case in read_cases(tmp_path)] == [1]
+
+
+@pytest.mark.parametrize("name", ["x" * 300, "a\0b"])
+def test_a_name_that_no_folder_can_have(name: str) -> None:
+    with pytest.raises(ScenarioError, match="does not exist; expected a folder of cases"):
+        read_cases(name)
+
+
+def test_a_reference_that_leads_nowhere(folder: Path) -> None:
+    (folder / "reference.csv").symlink_to(folder / "absent.csv")
+    with pytest.raises(ScenarioError, match=r"reference\.csv: there is no such file"):
+        read_cases(folder)

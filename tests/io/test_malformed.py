@@ -66,6 +66,10 @@ BAD_TASKS = [
     (TASKS.replace("255", "inf"), "line 2: deadline is 'inf'; expected a finite number > 0"),
     (TASKS.replace("255", "-infinity"), "line 2: deadline is '-infinity'; expected a finite number > 0"),
     (TASKS.replace("255", "1e999"), "line 2: deadline is '1e999'; expected a finite number > 0"),
+    (TASKS.replace("255", "1e300"), "line 2: deadline is 1e+300; expected a number > 0, from 1e-12 to 1e+12"),
+    (TASKS.replace("255", "1e-300"), "line 2: deadline is 1e-300; expected a number > 0, from 1e-12 to 1e+12"),
+    (TASKS.replace("3 4 20", "3 4 2e12"), "line 3: workload is 2000000000000.0; expected a number from 0 to 1e+12"),
+    (TASKS.replace("100 50", "1e13 50"), "line 1: width is 10000000000000.0; expected a number > 0, from 1e-12"),
     (TASKS.replace("255", "0"), "line 2: deadline is '0'; expected a finite number > 0"),
     (TASKS.replace("255", "-255"), "line 2: deadline is '-255'; expected a finite number > 0"),
     (TASKS.replace("255", "9" * 1000), "line 2: deadline is '999"),
@@ -85,7 +89,9 @@ BAD_TASKS = [
     ),
     (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", "line 1: byte 0x89 is not UTF-8; expected UTF-8 text"),
     (b"2 3 100 50\n\0\0\0\0", "line 2: holds the byte 0x00, as binary files do; expected text"),
-    (TASKS.encode("utf-16"), "line 1: byte 0xff is not UTF-8; expected UTF-8 text"),
+    (TASKS.encode("utf-16"), "looks like UTF-16; expected UTF-8 text"),
+    (TASKS.encode("utf-16-le"), "looks like UTF-16; expected UTF-8 text"),
+    (TASKS.encode("utf-16-be"), "looks like UTF-16; expected UTF-8 text"),
     (b"2 3 100 50\n0 1 2 20 255 \xe9t\xe9", "line 2: byte 0xe9 is not UTF-8; expected UTF-8 text"),
 ]
 
@@ -115,6 +121,7 @@ BAD_AGENTS = [
     ("1 100 50\n0 9 10 2.0\n", "has 1 robots; expected 2, the number in line 1 of"),
     (AGENTS.replace("100 50", "50 50"), "line 1: map is 50 x 50; expected 100 x 50 as in"),
     (AGENTS.replace("2.0", "0"), "line 2: capacity is '0'; expected a finite number > 0"),
+    (AGENTS.replace("2.0", "2e-13"), "line 2: capacity is 2e-13; expected a number > 0, from 1e-12 to 1e+12"),
     (AGENTS.replace("2.0", "-2"), "line 2: capacity is '-2'; expected a finite number > 0"),
     (AGENTS.replace("2.0", "two"), "line 2: capacity is 'two'; expected a finite number > 0"),
     (AGENTS.replace(" 2.0", ""), "line 2: '0 9 10' has 3 fields; expected 4 (id x y capacity)"),
@@ -179,6 +186,10 @@ BAD_JSON = [
     (SCENARIO.replace("255", '"255"'), "tasks[0].deadline is '255'; expected a number"),
     (SCENARIO.replace("255", "true"), "tasks[0].deadline is true; expected a number"),
     (SCENARIO.replace("255", "null"), "tasks[0].deadline is null; expected a number"),
+    (SCENARIO.replace("255", "1e300"), "tasks[0]: deadline is 1e+300; expected a number > 0, from 1e-12 to 1e+12"),
+    (SCENARIO.replace('"speed": 1', '"speed": 1e-13'), "robots[0]: speed is 1e-13; expected a number > 0, from"),
+    (SCENARIO.replace('"height": 50', '"height": 5e12'), "map: height is 5000000000000.0; expected a number > 0, from"),
+    (SCENARIO.replace('"version": 1', '"version": 1, "name": "\\u001b[31m"'), "name is '\\x1b[31m'; expected text"),
     (SCENARIO.replace("255", "0"), "tasks[0].deadline is 0; expected a number > 0"),
     (SCENARIO.replace("255", "[[[]]]"), "tasks[0].deadline is a list of 1; expected a number"),
     (SCENARIO.replace('"y": 4', '"y": 50.5'), "tasks[1]: y is 50.5; expected a number from 0 to 50"),
@@ -192,7 +203,7 @@ BAD_JSON = [
     (SCENARIO[: SCENARIO.index(',\n  "robots"')] + "}", "has 0 robots; expected at least one"),
     ("[" * 100_000, "is nested too deeply; expected a mrta_zoo.scenario file"),
     ('{"format":' * 100_000, "is nested too deeply; expected a mrta_zoo.scenario file"),
-    (SCENARIO.encode("utf-16"), "line 1: byte 0xff is not UTF-8; expected UTF-8 text"),
+    (SCENARIO.encode("utf-16"), "looks like UTF-16; expected UTF-8 text"),
     (b'{"\xff": 1}', "line 1: byte 0xff is not UTF-8; expected UTF-8 text"),
 ]  # fmt: skip
 
@@ -456,3 +467,24 @@ def test_scenario_fixture_is_valid(tmp_path: Path) -> None:
     assert read_scenario(tmp_path / "cas.csv").num_tasks == 2
     assert read_plan(tmp_path / "plan.json").routes == ((0, 2), (1,))
     assert json.loads(SCENARIO)["version"] == 1
+
+
+def test_a_table_without_a_map_cannot_have_far_places(tmp_path: Path) -> None:
+    path = tmp_path / "cas.csv"
+    path.write_text(TABLE.replace("map,100,50,,,,\n", "").replace("task,3,4", "task,3,4e12"))
+    with pytest.raises(ScenarioError, match=r"cas\.csv, line 3: y is 4000000000000\.0; expected a number from 0 to 1e"):
+        read_scenario(path)
+
+
+def test_names_with_control_characters(tmp_path: Path) -> None:
+    (tmp_path / "a\x1bb.csv").write_text(TABLE)
+    with pytest.raises(ScenarioError, match=r"the scenario's name is 'a\\x1bb'; expected text without control"):
+        read_scenario(tmp_path / "a\x1bb.csv")
+    (tmp_path / "a\x1bb.csv").rename(tmp_path / "cas.csv")
+    reference = tmp_path / "reference.csv"
+    for text in ("case,tasks,robots,me\x1b\ncas,2,1,1\n", "case,tasks,robots,me\ncas\x1b,2,1,1\n"):
+        reference.write_text(text)
+        with pytest.raises(ScenarioError, match=r"reference\.csv, line .*\\x1b'; expected text without control"):
+            read_cases(tmp_path)
+    with pytest.raises(PlanError, match="method is 'a\\\\tb'; expected text without control characters"):
+        write_plan(Plan.of([[0]], "cas", "a\tb"), tmp_path / "plan.json")

@@ -275,8 +275,8 @@ def test_initial_weights_come_from_the_seed_alone() -> None:
         ({"encoder": "graph"}, r"encoder is 'graph'; expected one of capsule, attention"),
         ({"embedding": 30}, r"embedding is 30; expected a multiple of heads, 8"),
         ({"node_features": ()}, r"node_features is empty; expected at least one feature"),
-        ({"moments": 0}, r"moments is 0; expected a whole number >= 1"),
-        ({"hops": -1}, r"hops is -1; expected a whole number >= 0"),
+        ({"moments": 0}, r"moments is 0; expected a whole number from 1 to 16"),
+        ({"hops": -1}, r"hops is -1; expected a whole number from 0 to 16"),
         ({"tanh_clip": 0.0}, r"tanh_clip is 0.0; expected a number > 0"),
     ],
 )

@@ -106,3 +106,16 @@ def test_a_folder_without_a_policy_is_an_error(tmp_path: Path) -> None:
 def test_importing_it_needs_no_torch() -> None:
     code = "import sys, mrta_zoo.policies.registry as r; r.make_solver('nearest'); assert 'torch' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+def test_a_name_that_no_folder_can_have() -> None:
+    with pytest.raises(ConfigError, match="there is no method 'xxx"):
+        make_solver("x" * 300)
+
+
+def test_seeds_have_a_greatest() -> None:
+    SolverOptions(seed=2**63 - 1)
+    with pytest.raises(
+        ConfigError, match="seed is 9223372036854775808; expected a whole number from 0 to 9223372036854"
+    ):
+        SolverOptions(seed=2**63)

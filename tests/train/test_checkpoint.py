@@ -191,3 +191,11 @@ def test_weights_that_are_not_finite_are_refused(tmp_path: Path) -> None:
 def test_unknown_policy_is_told(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"there is no policy 'capm'; expected one of"):
         load_policy("capm")
+
+
+@pytest.mark.parametrize("change", [{"network": NetworkConfig(encoder="foo")}, {"initial": "nothing"}])
+def test_a_refused_start_leaves_nothing_behind(tmp_path: Path, change: dict[str, object]) -> None:
+    with pytest.raises(ConfigError):
+        checkpoint.start(tmp_path / "run", replace(TINY, **change))  # type: ignore[arg-type]
+    assert not (tmp_path / "run").exists()
+    checkpoint.start(tmp_path / "run", TINY)

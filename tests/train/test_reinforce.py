@@ -122,6 +122,15 @@ def test_learns_to_pass_the_near_task_by(change: dict[str, object]) -> None:
     assert last.completion > 0.95
 
 
+def test_divergence_is_told_and_changes_no_weights() -> None:
+    run = Reinforce(TINY)
+    run.objective = lambda rollout, scenarios: rollout.cost * torch.nan
+    before = {name: value.clone() for name, value in run.network.state_dict().items()}
+    with pytest.raises(ConfigError, match="training diverged in update 1"):
+        run.step()
+    assert all(torch.equal(value, before[name]) for name, value in run.network.state_dict().items())
+
+
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
@@ -134,6 +143,10 @@ def test_learns_to_pass_the_near_task_by(change: dict[str, object]) -> None:
         ({"mask_rule": "all"}, "mask_rule is 'all'; expected one of feasible, active, unvisited"),
         ({"significance": 1.0}, "significance is 1.0; expected a number between 0 and 1"),
         ({"seed": -1}, "seed is -1; expected a whole number >= 0"),
+        ({"seed": 10**30}, "expected a whole number >= 0 and < 2"),
+        ({"entropy": float("nan")}, "entropy is nan; expected a number >= 0"),
+        ({"learning_rate": float("inf")}, "learning_rate is inf; expected a number > 0"),
+        ({"baseline": "rollout", "scenarios": 1, "samples": 1}, "scenarios x samples is 1, expected >= 2"),
         ({"device": "tpu9"}, "device is 'tpu9'; expected cpu, cuda or auto"),
     ],
 )
