@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 
 Decode = Literal["greedy", "sample"]
 
+MAX_SAMPLES = 10_000
+"""More at a time than memory holds; a budget draws as many as there is time for, some at a time."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SolverOptions:
@@ -38,7 +41,7 @@ class SolverOptions:
             in any company.
         decode: how learned methods choose: "greedy", the likeliest task each time; "sample", the best of several drawn
             missions and the greedy one. None is "sample" if there is a budget, else "greedy".
-        samples: missions that "sample" draws in one go, >= 1.
+        samples: missions that "sample" draws in one go, from 1 to `MAX_SAMPLES`.
         budget: seconds a scenario that methods which search may take, > 0; None leaves it to the method.
         mask_rule: what robots may choose, see `rules.MaskRule`. None is "feasible" or, for learned methods, the rule
             they were trained under.
@@ -59,8 +62,8 @@ class SolverOptions:
             object.__setattr__(self, "decode", "greedy" if self.budget is None else "sample")
         if self.decode not in get_args(Decode):
             raise ConfigError(f"decode is {self.decode!r}; expected one of {', '.join(get_args(Decode))}")
-        if self.samples < 1:
-            raise ConfigError(f"samples is {self.samples}; expected a whole number >= 1")
+        if not 1 <= self.samples <= MAX_SAMPLES:
+            raise ConfigError(f"samples is {self.samples}; expected a whole number from 1 to {MAX_SAMPLES}")
         if self.budget is not None and not 0 < self.budget < math.inf:
             raise ConfigError(f"budget is {self.budget:g}; expected a number of seconds > 0")
         if self.mask_rule is not None and self.mask_rule not in get_args(MaskRule):
