@@ -44,7 +44,7 @@ class RunState:
 
     update: int
     seconds: float
-    """Time spent training, over all sessions of the run."""
+    """Time spent training, before and after it was resumed."""
     history: list[Validation]
 
 
