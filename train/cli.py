@@ -20,6 +20,8 @@ from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.presets import PRESETS
 from mrta_zoo.train.reinforce import Reinforce, Update
 
+MAX_THREADS = 1024
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrainCommand:
@@ -55,8 +57,8 @@ def train_command(argv: Sequence[str]) -> None:
         ConfigError: if an option makes no sense or the folder holds no run, or already one.
     """
     command = parse(argv)
-    if command.threads < 0:
-        raise ConfigError(f"threads is {command.threads}; expected a whole number >= 0")
+    if not 0 <= command.threads <= MAX_THREADS:
+        raise ConfigError(f"threads is {command.threads}; expected a whole number from 0 to {MAX_THREADS}")
     if command.threads:
         torch.set_num_threads(command.threads)
     if command.resume:

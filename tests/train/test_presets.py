@@ -41,6 +41,7 @@ def test_flags_override_the_preset() -> None:
     [
         (["--preset", "smoky", "--out", "x"], "there is no preset 'smoky'; expected one of paper, fast"),
         (["--preset", "smoke", "--out", "x", "--threads", "-1"], "threads is -1"),
+        (["--preset", "smoke", "--out", "x", "--threads", "99999999999"], "expected a whole number from 0 to 1024"),
         (["--out", "nowhere", "--resume"], "nowhere holds no run to resume"),
     ],
 )
