@@ -6,7 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from mrta_zoo import Scenario
+from mrta_zoo import Scenario, mrta_v0
+from mrta_zoo.generators import UniformGenerator
+
+GENERATOR = UniformGenerator(tasks=(3, 10), robots=(2, 5), deadline=(20, 200))
+FORMS = ["dict", "flat"]
+"""Of observations."""
 
 
 def small_scenario(
@@ -63,3 +68,37 @@ def play(env: Any, seed: int = 0) -> tuple[list[tuple[str, int]], dict[str, floa
         decisions.append((agent, action))
         env.step(action)
     return decisions, returns
+
+
+def started(seed: int = 0, make: Any = mrta_v0.env, **options: Any) -> Any:
+    """An environment after its first reset."""
+    env = make(**options)
+    env.reset(seed=seed)
+    return env
+
+
+def same(a: Any, b: Any) -> bool:
+    """Equal, also in type and dtype, through dictionaries and arrays."""
+    if isinstance(a, dict):
+        return a.keys() == b.keys() and all(same(a[key], b[key]) for key in a)
+    if isinstance(a, np.ndarray):
+        return a.dtype == b.dtype and np.array_equal(a, b)
+    return type(a) is type(b) and a == b
+
+
+def record(env: Any, seed: int) -> list[Any]:
+    """Everything an episode shows, from where it stands to its end."""
+    rng = np.random.default_rng(seed)
+    seen = []
+    for agent in env.agent_iter():
+        observation, reward, terminated, truncated, info = env.last()
+        seen.append({"agent": agent, "observation": observation, "reward": reward, "info": info,
+                     "rewards": dict(env.rewards), "state": env.state(), "over": (terminated, truncated)})  # fmt: skip
+        env.step(None if terminated or truncated else random_action(mask_of(observation, info), rng))
+    return seen
+
+
+def completion_rate(env: Any) -> float:
+    """Of the mission under way."""
+    mission = env.unwrapped.mission
+    return mission.completed() / mission.scenario.num_tasks

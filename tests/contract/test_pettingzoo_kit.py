@@ -10,11 +10,15 @@ import numpy as np
 import pettingzoo
 import pytest
 from factories import small_scenario
-from pettingzoo.test import api_test, parallel_api_test, render_test, seed_test, state_test
-from pettingzoo.test.seed_test import parallel_seed_test
 
 from mrta_zoo import mrta_v0, registration
 from mrta_zoo.generators import TaptcGenerator, UniformGenerator
+
+with warnings.catch_warnings():
+    # Where pygame is installed, the kit imports PettingZoo's games in a way that PettingZoo itself calls deprecated.
+    warnings.simplefilter("ignore", DeprecationWarning)
+    from pettingzoo.test import api_test, parallel_api_test, render_test, seed_test, state_test
+    from pettingzoo.test.seed_test import parallel_seed_test
 
 SMALL = UniformGenerator(tasks=(3, 9), robots=(2, 4), deadline=(20, 150))
 KNOWN = {
