@@ -20,8 +20,9 @@ from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import Case, PlanScore, ScheduledTask, read_cases, read_scenario, write_plan
 from mrta_zoo.io.taptc import find_agent_file
+from mrta_zoo.policies.options import Decode
 from mrta_zoo.policies.protocol import Solver
-from mrta_zoo.policies.registry import Decode, make_solver
+from mrta_zoo.policies.registry import make_solver
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.suite import builtin_suite
 

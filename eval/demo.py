@@ -20,12 +20,14 @@ from mrta_zoo.eval.runner import solve_and_score
 from mrta_zoo.eval.schedule import totals
 from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.eval.threads import cpu_threads
+from mrta_zoo.extras import require
 from mrta_zoo.mission import Mission
 from mrta_zoo.policies.protocol import Policy
-from mrta_zoo.policies.registry import load_learned, make_solver, method_names, require_torch
+from mrta_zoo.policies.registry import load_learned, make_solver
 from mrta_zoo.scenario import Scenario
 
 STEPS_SHOWN = 10
+COMPARED = ("random", "nearest", "edf", "capam", "capam-plus")
 STEPPED, DRAWN = "r13a3i00", "r13a7i00"
 """Cases of the built-in suite: one to step through, one to draw."""
 BARS = "▁▂▃▄▅▆▇█"
@@ -42,7 +44,7 @@ def run_demo(folder: Path, policy_name: str = "capam-plus") -> None:
         MrtaError: if the folder cannot be made, there is no such policy, or something is not installed.
     """
     begun = time.perf_counter()
-    require_torch("the demo")
+    require("torch", "the demo")
     policy = load_learned(policy_name)
     _make(folder)
     console = results_console()
@@ -55,7 +57,7 @@ def run_demo(folder: Path, policy_name: str = "capam-plus") -> None:
 
     _heading(console, f"2. Methods compared on the built-in suite, {len(cases)} cases, scored by the verifier")
     with cpu_threads(1):
-        names = dict.fromkeys((*method_names(), policy_name))
+        names = dict.fromkeys((*COMPARED, policy_name))
         rows = run_with_progress(cases, {name: make_solver(name) for name in names})
     write_rows(rows, folder / "rows.csv")
     for table in summary_tables(rows):

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
-from typing import get_args
 
 import numpy as np
 import torch
@@ -139,8 +138,7 @@ class BatchMission:
     """
 
     def __init__(self, scenarios: ScenarioBatch, mask_rule: MaskRule = "feasible") -> None:
-        if mask_rule not in get_args(MaskRule):
-            raise check_mask_rule(mask_rule)
+        check_mask_rule(mask_rule)
         s = scenarios
         b, m, n, device = len(s), s.num_robots, s.num_tasks, s.device
         self.scenarios = s

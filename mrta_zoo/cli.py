@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 
 from mrta_zoo import __version__
 from mrta_zoo.errors import MrtaError
+from mrta_zoo.extras import require
 
 Command = Callable[[list[str]], None]
 """Runs a command with the arguments that follow its name."""
@@ -38,9 +39,7 @@ def _generate(argv: list[str]) -> None:
 
 
 def _train(argv: list[str]) -> None:
-    from mrta_zoo.policies.registry import require_torch
-
-    require_torch("training")
+    require("torch", "training")
     from mrta_zoo.train.cli import train_command
 
     train_command(argv)

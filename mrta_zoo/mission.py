@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -63,8 +62,7 @@ class Mission:
     """
 
     def __init__(self, scenario: Scenario, mask_rule: MaskRule = "feasible") -> None:
-        if mask_rule not in get_args(MaskRule):
-            raise check_mask_rule(mask_rule)
+        check_mask_rule(mask_rule)
         n, m = scenario.num_tasks, scenario.num_robots
         self.scenario = scenario
         self.mask_rule: MaskRule = mask_rule

@@ -11,6 +11,8 @@ from collections.abc import Callable
 from enum import IntEnum
 from typing import Any, Literal, get_args
 
+from mrta_zoo.errors import ConfigError
+
 MaskRule = Literal["feasible", "active", "unvisited"]
 """Which of the tasks not yet taken a robot may choose:
 
@@ -65,16 +67,18 @@ def may_choose(rule: MaskRule, finish: Any, ready: Any, deadline: Any) -> Any:
         return finish <= deadline
     if rule == "active":
         return (ready <= deadline) & (finish == finish)  # the second term only broadcasts to (..., N)
-    if rule == "unvisited":
-        return finish == finish
-    raise check_mask_rule(rule)
+    check_mask_rule(rule)
+    return finish == finish  # "unvisited"
 
 
-def check_mask_rule(rule: str) -> ValueError:
-    """The error for an unknown mask rule; call sites raise it."""
-    from mrta_zoo.errors import ConfigError
+def check_mask_rule(rule: object) -> None:
+    """Check the name of a mask rule.
 
-    return ConfigError(f"mask_rule is {rule!r}; expected one of {', '.join(get_args(MaskRule))}")
+    Raises:
+        ConfigError: if there is none of that name.
+    """
+    if not isinstance(rule, str) or rule not in get_args(MaskRule):
+        raise ConfigError(f"mask_rule is {rule!r}; expected one of {', '.join(get_args(MaskRule))}")
 
 
 def task_cost(taken: Any, finish: Any, deadline: Any, end: Any, where: Any, maximum: Any) -> Any:

@@ -66,8 +66,7 @@ class Settings:
             given = getattr(self, field)
             room = self._natural_room(field, default) if given is None else _count(field, given)
             object.__setattr__(self, field, room)
-        if not isinstance(self.mask_rule, str) or self.mask_rule not in get_args(MaskRule):
-            raise check_mask_rule(self.mask_rule)
+        check_mask_rule(self.mask_rule)
         object.__setattr__(self, "reward", make_reward(self.reward))
         one_of("observation", self.observation, get_args(ObservationForm))
         if self.render_mode is not None:

@@ -6,7 +6,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -17,13 +17,13 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.observation import MISSION_FEATURES, TASK_FEATURES, Observation
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.options import Decode
+from mrta_zoo.policies.pretrained import pretrained_names, pretrained_path
 from mrta_zoo.policies.rollout import NOT_FINITE, Rollout, roll_out
 from mrta_zoo.policies.sharing import Network
-from mrta_zoo.policies.weights import PolicyInfo, load_weights, pretrained_names, pretrained_path
+from mrta_zoo.policies.weights import PolicyInfo, load_weights
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
-
-Decode = Literal["greedy", "sample"]
 
 UNCHANGING_TASK = [TASK_FEATURES.index(name) for name in ("x", "y", "deadline", "workload")]
 UNCHANGING_MISSION = [MISSION_FEATURES.index(name) for name in ("crossing_ratio", "work_ratio")]

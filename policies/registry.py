@@ -1,73 +1,28 @@
 """Every method that can plan a mission, by name. To add one, give it an entry in `METHODS`.
 
-Importing this imports no torch; learned methods load it when they are made.
+Importing this imports no optional dependency; methods load theirs when they are made.
 """
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib import resources
-from importlib.util import find_spec
-from pathlib import Path
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING
 
-from mrta_zoo.bounds import check_seed
-from mrta_zoo.errors import ConfigError, MissingExtraError
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.extras import require
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.aec_loop import run_in_environment
 from mrta_zoo.policies.heuristics import EarliestDeadlinePolicy, NearestPolicy, RandomPolicy
+from mrta_zoo.policies.options import Decode, SolverOptions
+from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.protocol import Policy, Solver
-from mrta_zoo.rules import MaskRule, check_mask_rule
+from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
 
 if TYPE_CHECKING:
     from mrta_zoo.policies.neural import NeuralPolicy
-
-Decode = Literal["greedy", "sample"]
-
-MAX_SAMPLES = 10_000
-"""More at a time than memory holds; a budget draws as many as there is time for, some at a time."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SolverOptions:
-    """What any method may be told; each uses what it can.
-
-    Attributes:
-        seed: of all draws, from 0 to `bounds.MAX_SEED`. Every scenario starts from it, so that a case has the same plan
-            in any company.
-        decode: how learned methods choose: "greedy", the likeliest task each time; "sample", the best of several drawn
-            missions and the greedy one. None is "sample" if there is a budget, else "greedy".
-        samples: missions that "sample" draws in one go, from 1 to `MAX_SAMPLES`.
-        budget: seconds a scenario that methods which search may take, > 0; None leaves it to the method.
-        mask_rule: what robots may choose, see `rules.MaskRule`. None is "feasible" or, for learned methods, the rule
-            they were trained under.
-
-    Raises:
-        ConfigError: if a value is out of range.
-    """
-
-    seed: int = 0
-    decode: Decode | None = None
-    samples: int = 64
-    budget: float | None = None
-    mask_rule: MaskRule | None = None
-
-    def __post_init__(self) -> None:
-        check_seed(self.seed)
-        if self.decode is None:
-            object.__setattr__(self, "decode", "greedy" if self.budget is None else "sample")
-        if self.decode not in get_args(Decode):
-            raise ConfigError(f"decode is {self.decode!r}; expected one of {', '.join(get_args(Decode))}")
-        if not 1 <= self.samples <= MAX_SAMPLES:
-            raise ConfigError(f"samples is {self.samples}; expected a whole number from 1 to {MAX_SAMPLES}")
-        if self.budget is not None and not 0 < self.budget < math.inf:
-            raise ConfigError(f"budget is {self.budget:g}; expected a number of seconds > 0")
-        if self.mask_rule is not None and self.mask_rule not in get_args(MaskRule):
-            raise check_mask_rule(self.mask_rule)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,10 +32,12 @@ class Method:
     Attributes:
         summary: what it does, in a few words.
         make: the solver, given the options.
+        extra: the extra of the package that it needs, one of `extras.EXTRAS`.
     """
 
     summary: str
     make: Callable[[SolverOptions], Solver]
+    extra: str | None = None
 
 
 class PolicySolver:
@@ -147,9 +104,7 @@ METHODS: dict[str, Method] = {
 
 def method_names() -> list[str]:
     """What `make_solver` knows by name: `METHODS`, then the trained policies that ship with the package."""
-    folder = resources.files("mrta_zoo.policies.pretrained")
-    shipped = sorted(Path(file.name).stem for file in folder.iterdir() if file.name.endswith(".safetensors"))
-    return [*METHODS, *shipped]
+    return [*METHODS, *pretrained_names()]
 
 
 def make_solver(
@@ -173,11 +128,14 @@ def make_solver(
 
     Raises:
         ConfigError: if there is no such method, or an option is out of range.
-        MissingExtraError: if a learned method is asked for and torch is not installed.
+        MissingExtraError: if the method needs what is not installed.
     """
     options = SolverOptions(seed=seed, decode=decode, samples=samples, budget=budget, mask_rule=mask_rule)
     if name in METHODS:
-        return METHODS[name].make(options)
+        method = METHODS[name]
+        if method.extra is not None:
+            require(method.extra, f"method {name!r}")
+        return method.make(options)
     names = method_names()
     if name not in names and not name.endswith(".safetensors") and not os.path.isdir(name):
         raise ConfigError(
@@ -194,20 +152,7 @@ def load_learned(name: str) -> NeuralPolicy:
         ConfigError: if there is none, or its files are damaged.
         MissingExtraError: if torch is not installed.
     """
-    require_torch(f"method {name!r}")
+    require("torch", f"method {name!r}")
     from mrta_zoo.policies.neural import load_policy
 
     return load_policy(name)
-
-
-def require_torch(what: str) -> None:
-    """Make sure that trained networks can be used.
-
-    Raises:
-        MissingExtraError: if torch or safetensors is not installed; the message begins with `what`.
-    """
-    for module in ("torch", "safetensors"):
-        if find_spec(module) is None:
-            raise MissingExtraError(
-                f'{what} needs {module}, which is not installed; install it with: pip install "mrta_zoo[torch]"'
-            )

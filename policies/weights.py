@@ -8,7 +8,6 @@ from __future__ import annotations
 import json
 import os
 from dataclasses import dataclass, field, fields, is_dataclass
-from importlib import resources
 from pathlib import Path
 from typing import Any, Literal, TypeVar, get_type_hints
 
@@ -68,25 +67,6 @@ def load_weights(path: Path) -> tuple[Network, PolicyInfo]:
     network = build_network(info.network, info.sharing, info.robots, seed=0)
     load_state(network, tensors, path)
     return network.eval(), info
-
-
-def pretrained_names() -> list[str]:
-    """Names of the policies that ship with the package."""
-    folder = resources.files("mrta_zoo.policies.pretrained")
-    return sorted(each.name[: -len(".safetensors")] for each in folder.iterdir() if each.name.endswith(".safetensors"))
-
-
-def pretrained_path(name: str) -> Path:
-    """The file of a policy that ships with the package.
-
-    Raises:
-        ConfigError: if there is none of that name.
-    """
-    if name not in pretrained_names():
-        raise ConfigError(
-            f"no policy {name!r} ships with the package; there are {', '.join(pretrained_names()) or 'none'}"
-        )
-    return Path(str(resources.files("mrta_zoo.policies.pretrained") / f"{name}.safetensors"))
 
 
 def write_tensors(path: Path, tensors: dict[str, torch.Tensor]) -> None:

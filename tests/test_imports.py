@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parent.parent
 
 # From the bottom up. A module may import its own layer and those before it; a package stands for its modules.
 LAYERS = (
-    ("what needs nothing of ours", ("mrta_zoo.errors", "mrta_zoo.registration", "mrta_zoo.bounds")),
+    ("what needs nothing of ours", ("mrta_zoo.errors", "mrta_zoo.registration", "mrta_zoo.bounds", "mrta_zoo.extras")),
     ("the problem", ("mrta_zoo", "mrta_zoo.scenario", "mrta_zoo.plan")),
     ("its rules", ("mrta_zoo.rules",)),
     (

@@ -17,9 +17,10 @@ from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.capam.decision_features import Neighbourhood
 from mrta_zoo.policies.capam.inputs import Tasks
 from mrta_zoo.policies.neural import NeuralPolicy, load_policy
+from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.rollout import roll_out
 from mrta_zoo.policies.sharing import build_network
-from mrta_zoo.policies.weights import PolicyInfo, pretrained_names
+from mrta_zoo.policies.weights import PolicyInfo
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.suite import builtin_suite
 from mrta_zoo.verify import verify

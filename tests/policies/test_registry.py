@@ -9,10 +9,12 @@ from pathlib import Path
 import pytest
 from strategies import seeded_scenarios
 
+from mrta_zoo import extras
 from mrta_zoo.errors import ConfigError, MissingExtraError
-from mrta_zoo.policies import registry
+from mrta_zoo.policies import pretrained
+from mrta_zoo.policies.options import SolverOptions
 from mrta_zoo.policies.protocol import Solver
-from mrta_zoo.policies.registry import METHODS, SolverOptions, make_solver, method_names
+from mrta_zoo.policies.registry import METHODS, make_solver, method_names
 from mrta_zoo.verify import verify
 
 
@@ -47,7 +49,7 @@ def test_an_unknown_name_lists_what_there_is() -> None:
 
 
 def test_shipped_policies_are_methods() -> None:
-    folder = Path(registry.__file__).parent / "pretrained"
+    folder = Path(pretrained.__file__).parent.parent / "pretrained"
     shipped = sorted(path.stem for path in folder.glob("*.safetensors"))
     assert method_names() == [*METHODS, *shipped]
 
@@ -75,7 +77,7 @@ def test_decode_follows_the_budget_unless_given() -> None:
 
 
 def test_learned_methods_say_which_extra_they_need(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(registry, "find_spec", lambda name: None)
+    monkeypatch.setattr(extras, "find_spec", lambda name: None)
     with pytest.raises(MissingExtraError, match=r'needs torch.*pip install "mrta_zoo\[torch\]"'):
         make_solver(str(tmp_path / "policy.safetensors"))
 
