@@ -85,6 +85,18 @@ class LearnedSolver:
         self.policy.solve(scenario, mask_rule=self._options.mask_rule)
 
 
+def _ils(options: SolverOptions) -> Solver:
+    from mrta_zoo.policies.local_search.ils import IlsSolver
+
+    return IlsSolver(options.budget)
+
+
+def _eils(options: SolverOptions) -> Solver:
+    from mrta_zoo.policies.local_search.eils import EilsSolver
+
+    return EilsSolver(options.seed, options.budget)
+
+
 METHODS: dict[str, Method] = {
     "random": Method(
         "any feasible task, drawn evenly",
@@ -98,6 +110,8 @@ METHODS: dict[str, Method] = {
         "the feasible task with the earliest deadline",
         lambda options: PolicySolver(EarliestDeadlinePolicy, options, "edf"),
     ),
+    "ils": Method("iterated local search", _ils, extra="solvers"),
+    "eils": Method("local search with strings removed and refilled, accepted as in annealing", _eils, extra="solvers"),
 }
 """Methods that need no training. The policies that ship with the package are methods, too: see `method_names`."""
 

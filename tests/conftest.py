@@ -1,5 +1,15 @@
 """Puts this folder on the path, so that tests in subfolders can `from strategies import ...`."""
 
+import hashlib
+import os
+import tempfile
+from pathlib import Path
+
 import torch
 
 torch.set_num_threads(1)  # at the tests' sizes more threads only get in each other's way
+
+# Numba's cache does not see that a function called from another file has changed.
+_SOURCES = sorted((Path(__file__).parent.parent / "policies" / "local_search").glob("*.py"))
+_DIGEST = hashlib.sha256(b"".join(path.read_bytes() for path in _SOURCES)).hexdigest()[:16]
+os.environ["NUMBA_CACHE_DIR"] = str(Path(tempfile.gettempdir()) / f"mrta_zoo_numba_{_DIGEST}")
