@@ -6,13 +6,13 @@ or without a display.
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mrta_zoo.errors import ConfigError, MissingExtraError
+from mrta_zoo.io.atomic import replacing
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import FloatArray, Scenario
 from mrta_zoo.verify import Score, verify
@@ -76,13 +76,9 @@ def save_plan_picture(scenario: Scenario, plan: Plan, path: Path, score: Score |
     """
     check_picture_format(path)
     figure = draw_plan(scenario, plan, score)
-    partial = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
-        try:
+        with replacing(path) as partial:
             figure.savefig(partial, format=path.suffix[1:].lower())
-            os.replace(partial, path)
-        finally:
-            partial.unlink(missing_ok=True)
     except OSError as error:
         raise ConfigError(f"{path} cannot be written: {(error.strerror or str(error)).lower()}") from None
 
