@@ -14,13 +14,12 @@ import tyro
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from mrta_zoo.bounds import check_threads
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.train import checkpoint
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.presets import PRESETS
 from mrta_zoo.train.reinforce import Reinforce, Update
-
-MAX_THREADS = 1024
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,8 +56,7 @@ def train_command(argv: Sequence[str]) -> None:
         ConfigError: if an option makes no sense or the folder holds no run, or already one.
     """
     command = parse(argv)
-    if not 0 <= command.threads <= MAX_THREADS:
-        raise ConfigError(f"threads is {command.threads}; expected a whole number from 0 to {MAX_THREADS}")
+    check_threads(command.threads, least=0)
     if command.threads:
         torch.set_num_threads(command.threads)
     if command.resume:

@@ -21,6 +21,8 @@ MOST_CROSSINGS = 1000.0
 """Where `Tasks.horizon` (above, and below at its inverse) and `Tasks.work_unit` saturate: beyond it deadlines either
 hardly bind or hardly leave room to move, and float32 would run out of digits."""
 MOST_SHARE = MOST_CROSSINGS / (1 + MOST_CROSSINGS)
+USUAL_CROSSINGS = 4.0
+"""Deadlines lie some 2 to 6 crossings ahead; divided by this they are about as large as the other features."""
 
 _TASK = {name: column for column, name in enumerate(TASK_FEATURES)}
 _ROBOT = {name: column for column, name in enumerate(ROBOT_FEATURES)}
