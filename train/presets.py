@@ -7,7 +7,7 @@ from dataclasses import replace
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.train.config import TrainConfig
 
-# The paper's architecture, trained well on two CPU cores within an hour or two.
+# The paper's architecture; such runs took 47 to 94 minutes on one thread of a busy machine.
 FAST = TrainConfig(
     generator="mixture",
     scenarios=12,
@@ -39,7 +39,7 @@ PRESETS: dict[str, TrainConfig] = {
     "fast": FAST,
     # The same with decision-time features in the decoder: better, and slower to train.
     "fast-plus": replace(FAST, network=NetworkConfig(decision_features=True), updates=4000),
-    # About a minute on two CPU cores: to see that everything works.
+    # Less than a minute on one CPU thread: to see that everything works.
     "smoke": TrainConfig(
         network=NetworkConfig(embedding=64),
         tasks=40,
