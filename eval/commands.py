@@ -13,12 +13,13 @@ from mrta_zoo.errors import ConfigError, ScenarioError
 from mrta_zoo.eval.console import progress_bar, results_console
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import optional, parse
-from mrta_zoo.eval.rows import Row, write_rows
+from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.runner import Solved, evaluate, solve_and_score
 from mrta_zoo.eval.schedule import schedule_table, totals
 from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import Case, PlanScore, ScheduledTask, read_cases, read_scenario, write_plan
+from mrta_zoo.io.records import write_records
 from mrta_zoo.io.taptc import find_agent_file
 from mrta_zoo.policies.options import Decode
 from mrta_zoo.policies.protocol import Solver
@@ -186,7 +187,7 @@ def eval_command(argv: Sequence[str]) -> None:
     with cpu_threads(command.planning.threads):
         rows = run_with_progress(cases, solvers)
     if command.out:
-        write_rows(rows, command.out)
+        write_records(rows, command.out)
     console = results_console()
     best_known = {case.name: case.best_known for case in cases if case.best_known is not None}
     for table in summary_tables(rows, best_known):

@@ -15,12 +15,12 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.commands import builtin_cases, run_with_progress, write_solved
 from mrta_zoo.eval.console import results_console
 from mrta_zoo.eval.plot_plan import save_plan_picture
-from mrta_zoo.eval.rows import write_rows
 from mrta_zoo.eval.runner import solve_and_score
 from mrta_zoo.eval.schedule import totals
 from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.extras import require
+from mrta_zoo.io.records import write_records
 from mrta_zoo.mission import Mission
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.policies.registry import load_learned, make_solver
@@ -59,13 +59,13 @@ def run_demo(folder: Path, policy_name: str = "capam-plus") -> None:
     with cpu_threads(1):
         names = dict.fromkeys((*COMPARED, policy_name))
         rows = run_with_progress(cases, {name: make_solver(name) for name in names})
-    write_rows(rows, folder / "rows.csv")
+    write_records(rows, folder / "rows.csv")
     for table in summary_tables(rows):
         console.print(table)
     console.print(f"all rows: {folder / 'rows.csv'}", soft_wrap=True)
 
     _heading(console, "3. A small policy learns from scratch by REINFORCE")
-    with cpu_threads(1):  # a second one waits for the first more than it helps, above all on a busy machine
+    with cpu_threads(1):  # a second one gains 18 %, at the price of other results
         show_training(console, _new_folder(folder / "training"))
 
     _heading(console, "4. A plan as a picture")

@@ -1,6 +1,6 @@
 """Learning curves of training runs as a picture.
 
-``python -m mrta_zoo.eval.plot_history runs/a runs/b --out curves.png``
+``python -m mrta_zoo.eval.plot_history runs/a runs/b --out curves.png``; needs matplotlib (``mrta_zoo[plot]``).
 """
 
 from __future__ import annotations
@@ -11,9 +11,16 @@ from pathlib import Path
 from typing import Annotated
 
 import tyro
-from matplotlib.figure import Figure
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.extras import require
+from mrta_zoo.render.style import plain
+
+try:
+    from matplotlib.figure import Figure
+except ImportError:
+    require("plot", "a picture")
+    raise
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,11 +70,8 @@ def draw_history(curves: list[LearningCurve]) -> Figure:
     axes.set_xlabel("episodes sampled")
     axes.set_ylabel("validation completion, %")
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")
-    axes.grid(color="#e0e4e8")
-    axes.set_axisbelow(True)
+    plain(axes)
     axes.legend(frameon=False, loc="lower right")
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)
     return figure
 
 

@@ -6,14 +6,16 @@ or without a display.
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from mrta_zoo.errors import ConfigError, MissingExtraError
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.extras import require
+from mrta_zoo.io.atomic import replacing
 from mrta_zoo.plan import Plan
+from mrta_zoo.render.style import FAINT, INK, plain
 from mrta_zoo.scenario import FloatArray, Scenario
 from mrta_zoo.verify import Score, verify
 
@@ -25,16 +27,15 @@ try:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
     from matplotlib.patheffects import withStroke
-except ImportError as error:
-    raise MissingExtraError(
-        'pictures need matplotlib, which is not installed; install it with: pip install "mrta_zoo[plot]"'
-    ) from error
+except ImportError:
+    require("plot", "a picture")
+    raise
 
 ROBOT_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#882255", "#4D4D4D")
 """One for each robot, from the start again after the last. Okabe and Ito's, which colour-blind people can tell apart
 (without yellow and black, with wine and grey); robots are numbered in the picture all the same."""
 
-INK, FAINT, LATE = "#22303c", "#7d8894", "#000000"
+LATE = "#000000"
 HEIGHT_PER_ROBOT, LEAST_HEIGHT, MOST_HEIGHT = 0.4, 6.4, 30.0
 """Of the picture, in inches."""
 LEAST_ROWS = 4
@@ -76,13 +77,9 @@ def save_plan_picture(scenario: Scenario, plan: Plan, path: Path, score: Score |
     """
     check_picture_format(path)
     figure = draw_plan(scenario, plan, score)
-    partial = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
-        try:
+        with replacing(path) as partial:
             figure.savefig(partial, format=path.suffix[1:].lower())
-            os.replace(partial, path)
-        finally:
-            partial.unlink(missing_ok=True)
     except OSError as error:
         raise ConfigError(f"{path} cannot be written: {(error.strerror or str(error)).lower()}") from None
 
@@ -112,7 +109,7 @@ def _draw_map(axes: Any, scenario: Scenario, plan: Plan, score: Score) -> None:
     width, height = scenario.map_size
     margin = 0.035 * max(width, height)
     axes.set(xlim=(-margin, width + margin), ylim=(-margin, height + margin), aspect="equal", anchor="N")
-    _plain(axes)
+    plain(axes)
     numbered = scenario.num_tasks <= MOST_NUMBERED
     size = 34.0 if numbered else max(4.0, 5000.0 / scenario.num_tasks)
     taken = np.zeros(scenario.num_tasks, dtype=np.bool_)
@@ -178,7 +175,7 @@ def _draw_time(axes: Any, scenario: Scenario, score: Score) -> None:
     end = max(score.makespan, float(scenario.deadline.max()))
     m = scenario.num_robots
     axes.set(xlim=(-0.01 * end, 1.015 * end), ylim=(max(m, LEAST_ROWS) - 0.45, -0.6))
-    _plain(axes)
+    plain(axes)
     axes.grid(axis="y", visible=False)
     numbered = m <= 20  # more rows leave no room for text in the bars
     for robot, visits in enumerate(score.schedule):
@@ -245,15 +242,6 @@ def _legend_below(axes: Any, handles: list[Any]) -> None:
         handles=handles, loc="upper center", bbox_to_anchor=(0.5, below), ncols=len(handles), frameon=False, fontsize=9,
         labelcolor=INK, handletextpad=0.4, columnspacing=1.4,
     )  # fmt: skip
-
-
-def _plain(axes: Any) -> None:
-    axes.set_facecolor("#f5f6f8")
-    axes.grid(color="white", linewidth=1.2)
-    axes.set_axisbelow(True)
-    axes.tick_params(colors=FAINT, labelsize=8, length=0)
-    for spine in axes.spines.values():
-        spine.set_visible(False)
 
 
 def _colour(robot: int) -> str:

@@ -2,14 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Iterable
-from dataclasses import astuple, dataclass, fields
-from pathlib import Path
-
-from mrta_zoo.errors import ConfigError
-from mrta_zoo.io.source import write_text
+from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,19 +32,3 @@ class Row:
     distance: float
     makespan: float
     seconds: float
-
-
-COLUMNS = tuple(field.name for field in fields(Row))
-
-
-def write_rows(rows: Iterable[Row], path: Path) -> None:
-    """Write rows as CSV with a header, numbers in full precision; the whole file or nothing.
-
-    Raises:
-        ConfigError: if the file cannot be written.
-    """
-    stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    writer.writerows(astuple(row) for row in rows)
-    write_text(stream.getvalue(), path, ConfigError)

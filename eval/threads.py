@@ -6,21 +6,17 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from mrta_zoo.errors import ConfigError
-
-MOST_THREADS = 1024
-"""More than any machine has use for; torch fails with as many threads as the system cannot start."""
+from mrta_zoo.bounds import check_threads
 
 
 @contextmanager
 def cpu_threads(count: int) -> Iterator[None]:
-    """Within it torch uses `count` threads, 1 to `MOST_THREADS`. Without torch, or before its import, nothing happens.
+    """Within it torch uses `count` threads. Without torch, or before its import, nothing happens.
 
     Raises:
         ConfigError: if the number is out of range.
     """
-    if not 1 <= count <= MOST_THREADS:
-        raise ConfigError(f"threads is {count}; expected a whole number from 1 to {MOST_THREADS}")
+    check_threads(count, least=1)
     torch = sys.modules.get("torch")  # heuristics need none, so it is not imported for them
     if torch is None:
         yield

@@ -143,8 +143,6 @@ class BatchMission:
         b, m, n, device = len(s), s.num_robots, s.num_tasks, s.device
         self.scenarios = s
         self.mask_rule: MaskRule = mask_rule
-        self.time = torch.zeros(b, dtype=torch.float64, device=device)
-        self.actor = torch.full((b,), -1, dtype=torch.int64, device=device)
         self.ready = torch.zeros(b, m, dtype=torch.float64, device=device)
         self.position = s.robot_xy.clone()
         self.retired = ~s.robot_exists

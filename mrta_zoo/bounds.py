@@ -16,6 +16,9 @@ MOST = 1_000_000
 MAX_SEED = 2**63 - 1
 """The greatest seed that every random generator in use takes."""
 
+MAX_THREADS = 1024
+"""More than any machine has use for; torch fails with as many threads as the system cannot start."""
+
 
 def is_number(value: object) -> bool:
     """Whether it is a finite number; True and False are none."""
@@ -39,13 +42,23 @@ def as_finite(field: str, value: Any) -> float:
 
 
 def check_seed(seed: int) -> None:
-    """Check a seed given on the command line or to a solver.
+    """Check a seed given on the command line, to a solver or to a training run.
 
     Raises:
         ConfigError: if it is out of range.
     """
     if not 0 <= seed <= MAX_SEED:
         raise ConfigError(f"seed is {seed}; expected a whole number from 0 to {MAX_SEED}")
+
+
+def check_threads(threads: int, least: int) -> None:
+    """Check a number of CPU threads.
+
+    Raises:
+        ConfigError: if it is less than `least` or more than `MAX_THREADS`.
+    """
+    if not least <= threads <= MAX_THREADS:
+        raise ConfigError(f"threads is {threads}; expected a whole number from {least} to {MAX_THREADS}")
 
 
 def as_range(field: str, value: Any, positive: bool) -> tuple[float, float]:

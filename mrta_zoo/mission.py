@@ -22,7 +22,7 @@ from mrta_zoo.scenario import FloatArray, Scenario
 
 BoolArray = npt.NDArray[np.bool_]
 
-# As plain integers: looking up a member of an enumeration takes as long as a step of arithmetic on all tasks.
+# As plain integers, which are faster to look up and compare than members of an enumeration.
 _ACTIVE, _ASSIGNED, _COMPLETED, _MISSED = (int(status) for status in Status)
 _CHOOSABLE, _TAKEN, _DEADLINE_PASSED, _TOO_LATE = (int(reason) for reason in list(MaskReason)[:4])
 
@@ -97,10 +97,6 @@ class Mission:
         """(N,) what `robot` may choose when it is next free, as far as is known now."""
         mask: BoolArray = self._untaken & self._allowed[robot]
         return mask
-
-    def masks(self) -> BoolArray:
-        """(M, N) the masks of all robots."""
-        return self._untaken & self._allowed
 
     def free(self) -> list[int]:
         """The robots that are free now and have something to choose, in index order.

@@ -111,18 +111,14 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-import numpy as np
-from gymnasium import spaces
 from pettingzoo import AECEnv
 
 from mrta_zoo.bounds import as_finite
+from mrta_zoo.env_base import EnvBase
 from mrta_zoo.errors import ActionError
-from mrta_zoo.mission import Mission
-from mrta_zoo.observation import FloatTable
 from mrta_zoo.parallel import ParallelMrtaEnv
-from mrta_zoo.render import RENDER_MODES, render
+from mrta_zoo.render import RENDER_MODES
 from mrta_zoo.settings import Settings
-from mrta_zoo.world import World
 from mrta_zoo.wrappers import ActionSpaceWrapper, IllegalActionWrapper, OrderWrapper
 
 __all__ = ["env", "parallel_env", "raw_env"]
@@ -155,7 +151,7 @@ def parallel_env(**options: Any) -> ParallelMrtaEnv:
     return ParallelMrtaEnv(**options)
 
 
-class raw_env(AECEnv[str, Any, Any]):  # noqa: N801  (PettingZoo's name for it)
+class raw_env(EnvBase, AECEnv[str, Any, Any]):  # noqa: N801  (PettingZoo's name for it)
     """The environment without wrappers.
 
     Can be pickled and deep-copied at any moment; the copy goes on as the original would.
@@ -175,30 +171,9 @@ class raw_env(AECEnv[str, Any, Any]):  # noqa: N801  (PettingZoo's name for it)
     }
 
     def __init__(self, **options: Any) -> None:
-        super().__init__()
-        self.settings = settings = Settings.of(options)
+        settings = Settings.of(options)
         assert settings.max_tasks is not None
-        self._world = World(settings, num_actions=settings.max_tasks)
-        self.render_mode = settings.render_mode
-        self.possible_agents = list(self._world.names)
-        self.action_spaces = dict(self._world.action_spaces)
-        self.observation_spaces = dict.fromkeys(self.possible_agents, self._world.observation_space)
-        self.state_space = self._world.state_space
-
-    @property
-    def mission(self) -> Mission:
-        """The mission under way, with every detail that observations round off or leave out."""
-        return self._world.mission
-
-    def observation_space(self, agent: str) -> spaces.Space[Any]:
-        """The space of observations; one object for all agents."""
-        self._world.robot(agent)
-        return self._world.observation_space
-
-    def action_space(self, agent: str) -> spaces.Discrete:
-        """``Discrete(max_tasks)``; equal for all agents, but each has an object, and so a seed, of its own."""
-        self._world.robot(agent)
-        return self._world.action_spaces[agent]
+        super().__init__(settings, num_actions=settings.max_tasks)
 
     def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
         """Start an episode.
@@ -249,17 +224,6 @@ class raw_env(AECEnv[str, Any, Any]):  # noqa: N801  (PettingZoo's name for it)
         robot = self._world.robot(agent)
         seen = self._world.seen_by(robot)
         return seen if self._world.flat else {"observation": seen, "action_mask": self._world.mask(robot)}
-
-    def state(self) -> FloatTable:
-        """(8 max_tasks + 6 max_robots + 3,) float32 in [0, 1]: tasks, robots and mission."""
-        return self._world.state()
-
-    def render(self) -> np.ndarray | str | None:
-        """The mission as text or picture, by `render_mode`."""
-        return render(self.mission, self.render_mode)
-
-    def close(self) -> None:
-        """Nothing to close."""
 
     def _settle(self, rewards: list[float]) -> None:
         """Enter the books after the clock has moved: rewards, terminations, infos, who is next."""

@@ -28,22 +28,20 @@ from typing import Any, ClassVar, get_args
 
 import numpy as np
 import numpy.typing as npt
-from gymnasium import spaces
 from pettingzoo import ParallelEnv
 from pettingzoo.utils.env_logger import EnvLogger
 
 from mrta_zoo.bounds import as_finite
+from mrta_zoo.env_base import EnvBase
 from mrta_zoo.errors import ActionError
-from mrta_zoo.mission import Mission
-from mrta_zoo.observation import FloatTable
-from mrta_zoo.render import RENDER_MODES, render
+from mrta_zoo.render import RENDER_MODES
 from mrta_zoo.settings import Illegal, Settings, one_of
-from mrta_zoo.world import Info, World
+from mrta_zoo.world import Info
 
 StepResult = tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Info]]
 
 
-class ParallelMrtaEnv(ParallelEnv[str, Any, Any]):
+class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
     """The parallel environment. Can be pickled and deep-copied at any moment.
 
     Args:
@@ -63,35 +61,15 @@ class ParallelMrtaEnv(ParallelEnv[str, Any, Any]):
 
     def __init__(self, *, on_illegal: Illegal = "terminate", illegal_reward: float = -1.0, **options: Any) -> None:
         one_of("on_illegal", on_illegal, get_args(Illegal))
-        self.settings = settings = Settings.of(options)
+        settings = Settings.of(options)
         assert settings.max_tasks is not None
+        super().__init__(settings, num_actions=settings.max_tasks + 1)
         self.noop = settings.max_tasks
         self.on_illegal = on_illegal
         self.illegal_reward = as_finite("illegal_reward", illegal_reward)
-        self._world = World(settings, num_actions=settings.max_tasks + 1)
-        self.render_mode = settings.render_mode
-        self.possible_agents = list(self._world.names)
         self.agents: list[str] = []
-        self.action_spaces = dict(self._world.action_spaces)
-        self.observation_spaces = dict.fromkeys(self.possible_agents, self._world.observation_space)
-        self.state_space = self._world.state_space
         self._choosing: set[int] = set()
         self._owed: list[float] = []  # reset returns no rewards, so the first step brings those of the start
-
-    @property
-    def mission(self) -> Mission:
-        """The mission under way, with every detail that observations round off or leave out."""
-        return self._world.mission
-
-    def observation_space(self, agent: str) -> spaces.Space[Any]:
-        """The space of observations; one object for all agents."""
-        self._world.robot(agent)
-        return self._world.observation_space
-
-    def action_space(self, agent: str) -> spaces.Discrete:
-        """``Discrete(max_tasks + 1)``; equal for all agents, but each has an object of its own."""
-        self._world.robot(agent)
-        return self._world.action_spaces[agent]
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
@@ -160,17 +138,6 @@ class ParallelMrtaEnv(ParallelEnv[str, Any, Any]):
         else:
             mask[self.noop] = 1
         return mask
-
-    def state(self) -> FloatTable:
-        """(8 max_tasks + 6 max_robots + 3,) float32 in [0, 1]: tasks, robots and mission."""
-        return self._world.state()
-
-    def render(self) -> np.ndarray | str | None:
-        """The mission as text or picture, by `render_mode`."""
-        return render(self.mission, self.render_mode)
-
-    def close(self) -> None:
-        """Nothing to close."""
 
     def _choices(self, actions: dict[str, Any]) -> dict[str, int]:
         """An action within the action space for every agent."""

@@ -22,7 +22,7 @@ from mrta_zoo.settings import Settings
 
 Info = dict[str, Any]
 
-# As plain integers: looking up a member of an enumeration is slow.
+# As plain integers, which are faster to look up and compare than members of an enumeration.
 _CHOOSABLE, _TAKEN, _NO_TASK = int(MaskReason.CHOOSABLE), int(MaskReason.TAKEN), int(MaskReason.NO_TASK)
 
 

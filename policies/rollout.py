@@ -10,7 +10,7 @@ from torch import Tensor
 from mrta_zoo.batch import BatchMission, ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
-from mrta_zoo.policies.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.capam.inputs import Moments, Tasks, Watch
 from mrta_zoo.policies.sharing import Network
 from mrta_zoo.rules import MaskRule
 
@@ -136,8 +136,9 @@ def _run_segment(
 ) -> Tensor:
     taken: list[tuple[Moments, Tensor | None, Tensor, Tensor]] = []
     log_prob = torch.zeros(len(mission.actor), device=mission.actor.device)
+    watch = Watch(mission, samples)
     for _ in range(SEGMENT):
-        moments = Moments.of_batch(mission, samples)
+        moments = watch.moments()
         features = network.features(encoding, moments)  # type: ignore[arg-type]
         log_probs = network(encoding, moments, features).flatten(0, 1)
         if generator is None:

@@ -6,7 +6,6 @@ Nothing is ever unpickled, so a policy from a stranger can be loaded safely.
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeVar, get_type_hints
@@ -17,6 +16,7 @@ from safetensors import SafetensorError
 from safetensors.torch import load_file, save
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.io.atomic import replacing
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.sharing import Network, Sharing, build_network
 from mrta_zoo.rules import MaskRule
@@ -70,11 +70,10 @@ def load_weights(path: Path) -> tuple[Network, PolicyInfo]:
 
 
 def write_tensors(path: Path, tensors: dict[str, torch.Tensor]) -> None:
-    """Write tensors to a safetensors file; readers see the old file or the new one, never half of it."""
-    partial = path.with_name(path.name + ".partial")
-    # Not `save_file`, which makes files that only their owner can read.
-    partial.write_bytes(save({name: tensor.detach().cpu().contiguous() for name, tensor in tensors.items()}))
-    os.replace(partial, path)
+    """Write tensors to a safetensors file, atomically."""
+    with replacing(path) as partial:
+        # Not `save_file`, which makes files that only their owner can read.
+        partial.write_bytes(save({name: tensor.detach().cpu().contiguous() for name, tensor in tensors.items()}))
 
 
 def read_tensors(path: Path) -> dict[str, torch.Tensor]:
@@ -92,10 +91,9 @@ def read_tensors(path: Path) -> dict[str, torch.Tensor]:
 
 
 def write_json(path: Path, value: Any) -> None:
-    """Write a dataclass as indented JSON; readers see the old file or the new one, never half of it."""
-    partial = path.with_name(path.name + ".partial")
-    partial.write_text(json.dumps(msgspec.to_builtins(value), indent=2) + "\n", encoding="utf-8")
-    os.replace(partial, path)
+    """Write a dataclass as indented JSON, atomically."""
+    with replacing(path) as partial:
+        partial.write_text(json.dumps(msgspec.to_builtins(value), indent=2) + "\n", encoding="utf-8")
 
 
 def read_json(path: Path, of: type[T]) -> T:

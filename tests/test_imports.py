@@ -38,6 +38,7 @@ LAYERS = (
             "mrta_zoo.world",
             "mrta_zoo.wrappers",
             "mrta_zoo.render",
+            "mrta_zoo.env_base",
             "mrta_zoo.parallel",
             "mrta_zoo.mrta_v0",
         ),

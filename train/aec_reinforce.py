@@ -2,9 +2,9 @@
 
 One CapAM network serves all robots. Each scenario is played several times; a mission that completes more than the
 others of its scenario makes its decisions likelier (leave-one-out baseline). `train.reinforce` does the same on the
-batched simulator, some hundred times faster.
+batched simulator: 17 times faster with updates of this size, 113 times with 64 scenarios x 8 samples.
 
-Run it with ``python -m mrta_zoo.train.aec_reinforce``: 12 tasks, 2 robots, a minute or two.
+Run it with ``python -m mrta_zoo.train.aec_reinforce``: 12 tasks, 2 robots, a quarter of a minute.
 """
 
 from __future__ import annotations

@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 from typing import Protocol
 
-import torch
 from torch import Tensor
 
 from mrta_zoo.batch import ScenarioBatch
@@ -70,7 +69,7 @@ class RolloutBaseline:
         from scipy import stats
 
         own = self._greedy(validation)
-        if torch.equal(own, loss) or loss.mean() >= own.mean():
+        if loss.mean() >= own.mean():
             return False
         test = stats.ttest_rel(loss.cpu().numpy(), own.cpu().numpy(), alternative="less")
         if float(test.pvalue) >= self.significance:

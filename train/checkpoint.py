@@ -14,16 +14,15 @@ A run's folder holds::
 
 from __future__ import annotations
 
-import csv
-import io
 import os
 import shutil
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import torch
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.io.records import write_records
 from mrta_zoo.policies.weights import (
     PolicyInfo,
     load_state,
@@ -103,7 +102,7 @@ def saved_config(folder: Path) -> TrainConfig:
 
 
 def save(folder: Path, run: Reinforce, seconds: float) -> None:
-    """Write a checkpoint of the run, drop old ones, and keep the best policy."""
+    """Write a checkpoint of the run, which was just validated, drop old ones, and keep the best policy."""
     final = folder / "checkpoints" / _name(run.update)
     partial = final.with_name(final.name + ".partial")
     shutil.rmtree(partial, ignore_errors=True)
@@ -114,9 +113,9 @@ def save(folder: Path, run: Reinforce, seconds: float) -> None:
         write_tensors(partial / "baseline.safetensors", dict(run.baseline.network.state_dict()))
     write_json(partial / "state.json", RunState(run.update, round(seconds, 1), run.history))
     # Before the checkpoint counts: a run killed in between validates again and writes the same policy.
-    if run.history and run.history[-1] is run.best:
+    if run.history[-1] is run.best:
         save_policy(folder / "policy.safetensors", run.network, policy_info(run, seconds))
-    _write_history(folder, run.history)
+    write_records(run.history, folder / "history.csv")
     shutil.rmtree(final, ignore_errors=True)
     os.replace(partial, final)
     for number in _checkpoints(folder)[: -run.config.keep_checkpoints]:
@@ -178,13 +177,3 @@ def _load_optimizer(run: Reinforce, path: Path) -> None:
         run.optimizer.state[parameter] = {
             key: value if key == "step" else value.to(parameter.device) for key, value in state.items()
         }
-
-
-def _write_history(folder: Path, history: list[Validation]) -> None:
-    text = io.StringIO()
-    writer = csv.DictWriter(text, [each.name for each in fields(Validation)], lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(asdict(each) for each in history)
-    partial = folder / "history.csv.partial"
-    partial.write_text(text.getvalue(), encoding="utf-8")
-    os.replace(partial, folder / "history.csv")

@@ -14,13 +14,12 @@ import tyro
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from mrta_zoo.bounds import check_threads
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.train import checkpoint
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.presets import PRESETS
 from mrta_zoo.train.reinforce import Reinforce, Update
-
-MAX_THREADS = 1024
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,14 +38,15 @@ class TrainCommand:
 
     preset: str = "fast"
     """Where the other flags' defaults come from: paper (Table I of the paper, for a GPU), fast (the paper's
-    network, an hour or two on 2 CPU cores), fast-plus (with decision-time features), smoke (about a minute)."""
+    network; an hour or so on one CPU thread), fast-plus (with decision-time features), smoke (less than a minute)."""
     out: Path
     """Folder of the run."""
     resume: bool = False
     """Go on with the run in --out; its configuration is kept, so that no other flag is needed."""
     threads: int = 1
-    """CPU threads; 0 leaves the choice to torch. At these sizes one is about as fast as two, and far faster on a busy
-    machine. Results are the same only for the same number."""
+    """CPU threads; 0 leaves the choice to torch. On a quiet machine two train faster than one: 505 rather than 363
+    episodes a second with fast, 156 rather than 113 with fast-plus, 1795 rather than 1520 with smoke. Results are the
+    same only for the same number."""
     config: Annotated[TrainConfig, tyro.conf.arg(name="")] = field(default_factory=TrainConfig)
 
 
@@ -57,8 +57,7 @@ def train_command(argv: Sequence[str]) -> None:
         ConfigError: if an option makes no sense or the folder holds no run, or already one.
     """
     command = parse(argv)
-    if not 0 <= command.threads <= MAX_THREADS:
-        raise ConfigError(f"threads is {command.threads}; expected a whole number from 0 to {MAX_THREADS}")
+    check_threads(command.threads, least=0)
     if command.threads:
         torch.set_num_threads(command.threads)
     if command.resume:

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Literal, get_args
 
+from mrta_zoo.bounds import check_seed
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.sharing import Sharing
@@ -93,8 +94,7 @@ class TrainConfig:
             raise ConfigError(f"significance is {self.significance}; expected a number between 0 and 1")
         if not 0 <= self.entropy < math.inf:
             raise ConfigError(f"entropy is {self.entropy}; expected a number >= 0")
-        if not 0 <= self.seed < 2**63:
-            raise ConfigError(f"seed is {self.seed}; expected a whole number >= 0 and < 2**63")
+        check_seed(self.seed)
         if self.normalise and self.scenarios * self.samples < 2:
             raise ConfigError("normalise compares the missions of an update; scenarios x samples is 1, expected >= 2")
         for name, names in (

@@ -9,10 +9,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.io.csv_format import read_table
 from mrta_zoo.io.files import read_scenario
 from mrta_zoo.io.json_format import is_other_json
 from mrta_zoo.io.source import StrPath, check_name, count, shown
+from mrta_zoo.io.table import read_table
 from mrta_zoo.scenario import Scenario
 
 REFERENCE_FILE = "reference.csv"
@@ -90,7 +90,7 @@ def read_reference(path: StrPath, scenarios: Mapping[str, Scenario]) -> dict[str
     Raises:
         ScenarioError: if the table is malformed or contradicts a scenario's numbers of tasks or robots.
     """
-    (where, header), *rows = read_table(path)
+    (where, header), *rows = read_table(path, ScenarioError)
     methods = header[3:]
     if header[:3] != ["case", "tasks", "robots"] or not methods:
         raise ScenarioError(

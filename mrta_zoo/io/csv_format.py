@@ -14,7 +14,8 @@ from pathlib import Path
 
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, in_id_order
-from mrta_zoo.io.source import StrPath, count, number, read_text, shown, write_text
+from mrta_zoo.io.source import StrPath, count, number, shown, write_text
+from mrta_zoo.io.table import read_table
 from mrta_zoo.scenario import Scenario
 
 COLUMNS = ("kind", "x", "y", "deadline", "workload", "capacity", "speed")
@@ -27,7 +28,7 @@ def read_csv_part(path: StrPath) -> Part:
     Raises:
         ScenarioError: if it is missing or malformed.
     """
-    table = read_table(path)
+    table = read_table(path, ScenarioError)
     header_where, header = table[0]
     _check_header(header_where, header)
     tasks: list[tuple[int, TaskRow]] = []
@@ -62,34 +63,6 @@ def read_csv_part(path: StrPath) -> Part:
         map=map_row,
         name=Path(path).stem,
     )
-
-
-def read_table(path: StrPath) -> list[tuple[str, list[str]]]:
-    """Where each row of a CSV file stands, and its cells without surrounding blanks; at least the header.
-
-    Blank lines are skipped; every other row has as many cells as the header.
-
-    Raises:
-        ScenarioError: if the file is missing or is not such a table.
-    """
-    reader = csv.reader(io.StringIO(read_text(path, ScenarioError), newline=""), strict=True)
-    table: list[tuple[str, list[str]]] = []
-    try:
-        for cells in reader:
-            if not any(cell.strip() for cell in cells) and len(cells) <= 1:
-                continue
-            where = f"{path}, line {reader.line_num}"
-            if table and len(cells) != len(table[0][1]):
-                raise ScenarioError(
-                    f"{where}: {shown(','.join(cells))} has {len(cells)} cells; "
-                    f"expected {len(table[0][1])} as in the header"
-                )
-            table.append((where, [cell.strip() for cell in cells]))
-    except csv.Error as problem:
-        raise ScenarioError(f"{path}, line {reader.line_num}: {problem}; expected cells separated by commas") from None
-    if not table:
-        raise ScenarioError(f"{path} has no rows; expected a header row")
-    return table
 
 
 def write_csv(scenario: Scenario, path: StrPath) -> None:

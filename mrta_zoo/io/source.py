@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import os
 import re
-from pathlib import Path
 
 from mrta_zoo.errors import MrtaError
+from mrta_zoo.io.atomic import replacing
 
 StrPath = str | os.PathLike[str]
 
@@ -38,7 +38,7 @@ def read_text(path: StrPath, error: type[MrtaError]) -> str:
     except (OSError, ValueError) as problem:  # ValueError: a null character in the path
         raise error(f"{_printable(path)} cannot be read: {_reason(problem)}") from None
     if len(data) > MAX_BYTES:
-        raise error(f"{path} is larger than {MAX_BYTES // 2**20} MiB; expected a scenario or plan file")
+        raise error(f"{path} is larger than {MAX_BYTES // 2**20} MiB; expected a scenario, a plan or a table")
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as problem:
@@ -56,7 +56,7 @@ def read_text(path: StrPath, error: type[MrtaError]) -> str:
         raise error(f"{path}, line {line}: holds the byte 0x00, as binary files do; expected text")
     text = text.replace("\r\n", "\n").replace("\r", "\n")
     if not text.strip():
-        raise error(f"{path} is empty; expected a scenario or plan")
+        raise error(f"{path} is empty; expected a scenario, a plan or a table")
     return text
 
 
@@ -66,18 +66,9 @@ def write_text(text: str, path: StrPath, error: type[MrtaError]) -> None:
     Raises:
         error: if the file cannot be written.
     """
-    path = Path(path)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp") if path.name else path
     try:
-        if path.exists() and not path.is_file() and not path.is_dir():  # a device or pipe: must not be replaced
-            path.write_text(text, encoding="utf-8")
-            return
-        try:
-            temporary.write_text(text, encoding="utf-8", newline="")
-            os.replace(temporary, path)
-        except BaseException:
-            temporary.unlink(missing_ok=True)
-            raise
+        with replacing(path) as partial:
+            partial.write_text(text, encoding="utf-8", newline="")
     except (OSError, ValueError) as problem:
         raise error(f"{_printable(path)} cannot be written: {_reason(problem)}") from None
 

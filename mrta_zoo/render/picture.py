@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from mrta_zoo.errors import MissingExtraError
+from mrta_zoo.extras import require
 from mrta_zoo.mission import Mission
+from mrta_zoo.render.style import FAINT, INK, plain
 from mrta_zoo.render.whereabouts import whereabouts
 from mrta_zoo.rules import Status
 
@@ -20,10 +21,9 @@ try:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
-except ImportError as error:
-    raise MissingExtraError(
-        'pictures need matplotlib, which is not installed; install it with: pip install "mrta_zoo[plot]"'
-    ) from error
+except ImportError:
+    require("plot", "a picture")
+    raise
 
 ROBOT_COLOURS = (
     "#3b6fb6", "#d9772b", "#7a52a3", "#0f9aa8", "#c2478f", "#8a6a3a", "#5a6b7d", "#a3a12a", "#2f4b8f", "#b35c5c",
@@ -36,7 +36,6 @@ TASK_STYLE: dict[Status, dict[str, Any]] = {
     Status.COMPLETED: {"marker": "o", "s": 34, "facecolors": "#3fa35b", "edgecolors": "#1d5c30", "linewidths": 1.0},
     Status.MISSED: {"marker": "X", "s": 64, "facecolors": "#d6453d", "edgecolors": "white", "linewidths": 0.7},
 }
-INK = "#22303c"
 MOST_LISTED = 24
 
 
@@ -63,12 +62,7 @@ def _draw_map(axes: Any, mission: Mission) -> None:
     width, height = scenario.map_size
     margin = 0.025 * max(width, height)
     axes.set(xlim=(-margin, width + margin), ylim=(-margin, height + margin), aspect="equal")
-    axes.set_facecolor("#f5f6f8")
-    axes.grid(color="white", linewidth=1.2)
-    axes.set_axisbelow(True)
-    axes.tick_params(colors="#6b7783", labelsize=8, length=0)
-    for spine in axes.spines.values():
-        spine.set_visible(False)
+    plain(axes)
     for robot, route in enumerate(mission.routes):
         colour = _colour(robot)
         now = whereabouts(mission, robot)
@@ -113,10 +107,10 @@ def _draw_robots(axes: Any, mission: Mission) -> None:
         handletextpad=0.6, labelspacing=0.55, labelcolor=INK, title=f"{mission.scenario.num_tasks} tasks",
         alignment="left",
     )  # fmt: skip
-    legend.get_title().set(fontsize=10, color="#6b7783")
+    legend.get_title().set(fontsize=10, color=FAINT)
     listed = min(mission.scenario.num_robots, MOST_LISTED)
     step = min(0.062, 0.66 / (listed + 1))
-    axes.text(0, 0.70, f"{mission.scenario.num_robots} robots", fontsize=10, color="#6b7783", va="center")
+    axes.text(0, 0.70, f"{mission.scenario.num_robots} robots", fontsize=10, color=FAINT, va="center")
     for robot in range(listed):
         height = 0.70 - (robot + 1) * step
         axes.scatter(0.045, height, s=min(190, 3200 * step), c=_colour(robot), clip_on=False)

@@ -24,7 +24,16 @@ class AttentionEncoder(nn.Module):
         self.layers = nn.ModuleList(_Layer(embedding, heads) for _ in range(layers))
 
     def forward(self, nodes: Tensor, exists: Tensor, graph: Tensor) -> Tensor:
-        """Embed every task: (S, N, h); 0 for padding. `graph` is not used: attention finds its own weights."""
+        """Embed every task.
+
+        Args:
+            nodes: (S, N, features) node features.
+            exists: (S, N) bool, false for padding.
+            graph: (S, N, D) not used: attention finds its own weights.
+
+        Returns:
+            (S, N, h) embeddings; 0 for padding.
+        """
         keep = exists[..., None].to(nodes.dtype)
         hidden: Tensor = self.embed(nodes) * keep
         for layer in self.layers:

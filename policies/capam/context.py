@@ -5,7 +5,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
-from mrta_zoo.policies.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.capam.inputs import USUAL_CROSSINGS, Moments, Tasks
 
 
 class Context(nn.Module):
@@ -35,8 +35,8 @@ class Context(nn.Module):
         own = torch.stack(
             (
                 moments.elapsed,
-                moments.elapsed * horizon / 4,  # 4: deadlines lie some 2 to 6 crossings ahead
-                horizon / 4,
+                moments.elapsed * horizon / USUAL_CROSSINGS,
+                horizon / USUAL_CROSSINGS,
                 work_unit,
                 moments.of_ego(moments.capacity),
                 *own_xy.unbind(-1),

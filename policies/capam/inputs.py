@@ -21,6 +21,8 @@ MOST_CROSSINGS = 1000.0
 """Where `Tasks.horizon` (above, and below at its inverse) and `Tasks.work_unit` saturate: beyond it deadlines either
 hardly bind or hardly leave room to move, and float32 would run out of digits."""
 MOST_SHARE = MOST_CROSSINGS / (1 + MOST_CROSSINGS)
+USUAL_CROSSINGS = 4.0
+"""Deadlines lie some 2 to 6 crossings ahead; divided by this they are about as large as the other features."""
 
 _TASK = {name: column for column, name in enumerate(TASK_FEATURES)}
 _ROBOT = {name: column for column, name in enumerate(ROBOT_FEATURES)}
@@ -107,18 +109,7 @@ class Moments:
     @classmethod
     def of_batch(cls, mission: BatchMission, groups: int = 1) -> Moments:
         """The present moment of B = S·G missions, of which each `groups` in a row share their scenario."""
-        s, scales = mission.scenarios, _scales(mission.scenarios)
-        flat = (
-            (mission.position / scales.length[:, None, None]).float(),
-            (s.capacity / scales.capacity[:, None]).float(),
-            (s.speed / scales.speed[:, None]).float(),
-            (mission.ready / scales.time[:, None]).clamp(max=1).float(),
-            ~mission.retired,
-            mission.actor.clamp(min=0),
-            (mission.time / scales.time).clamp(max=1).float(),
-            mission.mask(),
-        )
-        return cls(*(tensor.unflatten(0, (-1, groups)) for tensor in flat))
+        return Watch(mission, groups).moments()
 
     @classmethod
     def of_observations(cls, observations: Sequence[Observation], device: torch.device | str = "cpu") -> Moments:
@@ -148,6 +139,38 @@ class Moments:
         """The row of a (S, G, M, …) table that belongs to the robot to act: (S, G, …)."""
         index = self.ego.reshape(*self.ego.shape, *[1] * (table.dim() - 2))
         return table.gather(2, index.expand(*self.ego.shape, 1, *table.shape[3:])).squeeze(2)
+
+
+class Watch:
+    """Reads one moment after another of the same B missions, with what doesn't change computed once.
+
+    Args:
+        mission: B = S·G missions.
+        groups: G, how many in a row share their scenario.
+    """
+
+    def __init__(self, mission: BatchMission, groups: int = 1) -> None:
+        s, scales = mission.scenarios, _scales(mission.scenarios)
+        self.mission = mission
+        self._groups = (-1, groups)
+        self._length = scales.length[:, None, None]
+        self._time = scales.time
+        self._capacity = (s.capacity / scales.capacity[:, None]).float().unflatten(0, self._groups)
+        self._speed = (s.speed / scales.speed[:, None]).float().unflatten(0, self._groups)
+
+    def moments(self) -> Moments:
+        """The present moment."""
+        mission, groups = self.mission, self._groups
+        return Moments(
+            xy=(mission.position / self._length).float().unflatten(0, groups),
+            capacity=self._capacity,
+            speed=self._speed,
+            ready=(mission.ready / self._time[:, None]).clamp(max=1).float().unflatten(0, groups),
+            working=(~mission.retired).unflatten(0, groups),
+            ego=mission.actor.clamp(min=0).unflatten(0, groups),
+            elapsed=(mission.time / self._time).clamp(max=1).float().unflatten(0, groups),
+            mask=mission.mask().unflatten(0, groups),
+        )
 
 
 def _scales(s: ScenarioBatch) -> Scales:

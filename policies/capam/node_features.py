@@ -8,16 +8,13 @@ import torch
 from torch import Tensor
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.policies.capam.inputs import Tasks
-
-CROSSINGS = 4.0
-"""Deadlines lie some 2 to 6 crossings ahead; divided by this they are about as large as the other features."""
+from mrta_zoo.policies.capam.inputs import USUAL_CROSSINGS, Tasks
 
 NODE_FEATURES: dict[str, Callable[[Tasks], Tensor]] = {
     "x": lambda tasks: tasks.xy[..., 0],
     "y": lambda tasks: tasks.xy[..., 1],
     "deadline": lambda tasks: tasks.deadline,
-    "deadline_in_crossings": lambda tasks: tasks.deadline * tasks.horizon[:, None] / CROSSINGS,
+    "deadline_in_crossings": lambda tasks: tasks.deadline * tasks.horizon[:, None] / USUAL_CROSSINGS,
     "workload": lambda tasks: tasks.workload,
     "workload_in_crossings": lambda tasks: tasks.workload * tasks.work_unit[:, None],
 }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import builtins
 import importlib
 import sys
 from pathlib import Path
@@ -76,15 +75,11 @@ def test_errors(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-def test_without_matplotlib_it_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
-    real_import = builtins.__import__
-
-    def without(name: str, *args: object, **options: object) -> object:
-        if name.startswith("matplotlib"):
-            raise ImportError(name)
-        return real_import(name, *args, **options)  # type: ignore[arg-type]
-
-    monkeypatch.delitem(sys.modules, "mrta_zoo.eval.plot_plan")
-    monkeypatch.setattr(builtins, "__import__", without)
-    with pytest.raises(MissingExtraError, match=r'pip install "mrta_zoo\[plot\]"'):
-        importlib.import_module("mrta_zoo.eval.plot_plan")
+@pytest.mark.parametrize("module", ["eval.plot_plan", "eval.plot_history", "render.picture"])
+def test_without_matplotlib_it_names_the_extra(module: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    for name in [name for name in sys.modules if name.startswith("matplotlib.")]:
+        monkeypatch.setitem(sys.modules, name, None)
+    monkeypatch.delitem(sys.modules, f"mrta_zoo.{module}", raising=False)
+    with pytest.raises(MissingExtraError, match=r'needs matplotlib.*pip install "mrta_zoo\[plot\]"'):
+        importlib.import_module(f"mrta_zoo.{module}")

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,12 +14,13 @@ from mrta_zoo import Scenario, mrta_v0
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import UniformGenerator
+from mrta_zoo.policies import neural
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.capam.decision_features import Neighbourhood
 from mrta_zoo.policies.capam.inputs import Tasks
 from mrta_zoo.policies.neural import NeuralPolicy, load_policy
 from mrta_zoo.policies.pretrained import pretrained_names
-from mrta_zoo.policies.rollout import roll_out
+from mrta_zoo.policies.rollout import Rollout, roll_out
 from mrta_zoo.policies.sharing import build_network
 from mrta_zoo.policies.weights import PolicyInfo
 from mrta_zoo.rules import MaskRule
@@ -114,12 +116,28 @@ def test_a_policy_in_training_decides_by_its_present_weights() -> None:
     )
 
 
-def test_a_budget_is_kept() -> None:
-    policy = load_policy("capam-plus")
-    scenario = UniformGenerator(tasks=(150, 150), robots=(10, 10))(np.random.default_rng(0))
-    begun = time.perf_counter()
-    policy.solve(scenario)
-    greedy = time.perf_counter() - begun
-    begun = time.perf_counter()
-    policy.solve(scenario, decode="sample", budget=3 * greedy)
-    assert time.perf_counter() - begun < 30 * greedy  # a batch of 64 draws alone takes more
+@pytest.mark.parametrize(
+    ("pace", "budget", "drawn"),
+    [
+        (1.0, 0.5, []),  # the greedy mission alone takes longer
+        (1.0, 3.0, [4]),  # the first draws, which tell the pace, are past the end: not one more
+        (1.0, 10.0, [4, 5]),  # 1 + 4 + 5: as many as there is time for
+        (0.125, 20.0, [4, 64, 64, 27]),  # 160 in all, 64 at most in one go
+    ],
+)
+def test_a_budget_is_kept(monkeypatch: pytest.MonkeyPatch, pace: float, budget: float, drawn: list[int]) -> None:
+    # By a clock that a mission moves on by `pace` seconds, however fast this machine is.
+    now, batches = 0.0, []
+
+    def timed_roll_out(*arguments: Any, samples: int = 1, **options: Any) -> Rollout:
+        nonlocal now
+        now += pace * samples
+        batches.append(samples)
+        return roll_out(*arguments, samples=samples, **options)
+
+    monkeypatch.setattr(neural, "roll_out", timed_roll_out)
+    monkeypatch.setattr(neural, "time", SimpleNamespace(perf_counter=lambda: now))
+    scenario = UniformGenerator(tasks=(8, 8), robots=(2, 2))(np.random.default_rng(0))
+    policy = NeuralPolicy(build_network(SMALL, "shared", 1, seed=0), PolicyInfo(network=SMALL))
+    policy.solve(scenario, decode="sample", budget=budget)
+    assert batches == [1, *drawn]

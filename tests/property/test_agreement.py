@@ -93,7 +93,7 @@ def check_mission(mission: Mission, want: Expected) -> None:
     assert mission.ready == want.ready
     assert mission.retired == want.retired
     assert mission.free() == want.free
-    assert mission.masks().tolist() == want.masks
+    assert [mission.mask(robot).tolist() for robot in range(mission.scenario.num_robots)] == want.masks
     assert mission.finish_if.tolist() == want.finish_if
     assert np.array_equal(mission.finish, want.finish, equal_nan=True)
     assert mission.status.tolist() == want.status

@@ -1,0 +1,59 @@
+"""What the AEC and the parallel environment have in common of PettingZoo's interface."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from gymnasium import spaces
+
+from mrta_zoo.mission import Mission
+from mrta_zoo.observation import FloatTable
+from mrta_zoo.render import render
+from mrta_zoo.settings import Settings
+from mrta_zoo.world import World
+
+
+class EnvBase:
+    """Spaces, state and rendering on top of a `World`; comes first among the bases.
+
+    Args:
+        settings: the environment's options.
+        num_actions: of every agent.
+    """
+
+    def __init__(self, settings: Settings, num_actions: int) -> None:
+        super().__init__()
+        self.settings = settings
+        self._world = World(settings, num_actions)
+        self.render_mode = settings.render_mode
+        self.possible_agents = list(self._world.names)
+        self.action_spaces = dict(self._world.action_spaces)
+        self.observation_spaces = dict.fromkeys(self.possible_agents, self._world.observation_space)
+        self.state_space = self._world.state_space
+
+    @property
+    def mission(self) -> Mission:
+        """The mission under way, with every detail that observations round off or leave out."""
+        return self._world.mission
+
+    def observation_space(self, agent: str) -> spaces.Space[Any]:
+        """The space of observations; one object for all agents."""
+        self._world.robot(agent)
+        return self._world.observation_space
+
+    def action_space(self, agent: str) -> spaces.Discrete:
+        """The space of actions; equal for all agents, but each has an object, and so a seed, of its own."""
+        self._world.robot(agent)
+        return self._world.action_spaces[agent]
+
+    def state(self) -> FloatTable:
+        """(8 max_tasks + 6 max_robots + 3,) float32 in [0, 1]: tasks, robots and mission."""
+        return self._world.state()
+
+    def render(self) -> np.ndarray | str | None:
+        """The mission as text or picture, by `render_mode`."""
+        return render(self.mission, self.render_mode)
+
+    def close(self) -> None:
+        """Nothing to close."""
