@@ -13,7 +13,7 @@ from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import FloatArray, Scenario
 
 RANGE = 1e4
-"""How far robots can go, in sides of the map: 1e6 on a map of 100 × 100, as the authors set it for TAPTC."""
+"""How far robots can go, in sides of the map: 1e6 on a map of side 100, as the authors set it for TAPTC."""
 TIME_SCALE = 1.1
 """T of the weights, in latest deadlines."""
 MATCHED = 10.0
@@ -24,8 +24,8 @@ at most one match, of weight 1, when it gets one."""
 class BigMrtaSolver:
     """Event-driven, as the environment. Every task that it plans is finished by its deadline.
 
-    An edge joins a robot and a task that nobody has taken yet if the robot, busy ones from where and when they get free,
-    can finish it at a time f by its deadline. It weighs (range - distance) · exp(-f / T). With the authors' range for
+    An edge joins a robot and a task that nobody has taken if the robot, from where and when it gets free, can finish
+    it at a time f by its deadline. It weighs (range - distance) · exp(-f / T). With the authors' range for
     TAPTC, 1e6 on a map of side 100, the first factor varies by 1.4e-4, so that in effect what is finished soonest
     weighs most. We keep it, and both constants in proportion to the scenario, so that units do not matter: the range
     is `RANGE` times the map's longer side, T is `TIME_SCALE` times the latest deadline (which the authors cut to a
@@ -54,7 +54,7 @@ class BigMrtaSolver:
 
 
 def _weights(mission: Mission, robot: int) -> FloatArray:
-    """(N,) what each task weighs for a robot, from 0.4 to 1; 0 for those that it cannot finish in time, or are taken."""
+    """(N,) what each task weighs for a robot, from 0.4 to 1; 0 if it is taken, or cannot be finished in time."""
     scenario = mission.scenario
     distance = np.hypot(*(scenario.task_xy - mission.position[robot]).T)
     near = 1.0 - distance / (RANGE * max(scenario.map_size))

@@ -20,7 +20,7 @@ def on_time(scenario: Scenario, routes: Sequence[Iterable[int]]) -> Routes:
         routes: for each robot its tasks, in order.
     """
     taken: set[int] = set()
-    kept = []
+    kept: list[list[int]] = []
     for robot, route in enumerate(routes):
         speed, capacity = float(scenario.speed[robot]), float(scenario.capacity[robot])
         (x, y), ready = scenario.robot_xy[robot].tolist(), 0.0

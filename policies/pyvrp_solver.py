@@ -6,6 +6,7 @@ Wouda, Lan and Kool, "PyVRP: a high-performance VRP solver package", INFORMS Jou
 from __future__ import annotations
 
 import math
+import warnings
 from typing import Any
 
 import numpy as np
@@ -21,10 +22,10 @@ from mrta_zoo.scenario import Scenario
 BUDGET = 5.0
 RESOLUTION = 10**7
 """Model time units until the latest deadline."""
-WARP = 1e-5
-"""What a model time unit of lateness costs at most during the search, in prizes: in between, plans that are late are
-worth passing through."""
-NEIGHBOURS = 30
+WARP = 2e-5
+"""What a model time unit of lateness costs at most during the search, in prizes. The search starts at half of it and
+adapts it, so that it passes through plans that are late, but finds some that are not."""
+NEIGHBOURS = 20
 
 
 class PyVrpSolver:
@@ -37,8 +38,8 @@ class PyVrpSolver:
     time, so that one more task is always worth it.
 
     PyVRP counts in integers. Durations are rounded down and deadlines up, so that what is in time in floating-point
-    arithmetic is in time there, also where a deadline is met exactly. What the model finds in time and exact arithmetic does not
-    is dropped from the plan. What is planned is finished by its deadline, whatever the mask rule.
+    arithmetic is in time there, also where a deadline is met exactly. What only the model finds in time is dropped
+    from the plan. What is planned is finished by its deadline, whatever the mask rule.
 
     Args:
         seed: of the search, from 0 to `bounds.MAX_SEED`; PyVRP uses its lower 32 bits.
@@ -68,24 +69,24 @@ class PyVrpSolver:
     def _search(self, scenario: Scenario, tasks: IntArray) -> list[list[int]]:
         """Routes through some of `tasks`."""
         from pyvrp import PenaltyParams, SolveParams, solve
+        from pyvrp.exceptions import PenaltyBoundWarning
         from pyvrp.search import NeighbourhoodParams
         from pyvrp.stop import MaxIterations, MaxRuntime, MultipleCriteria
 
         prize = RESOLUTION * (scenario.num_robots + 1)
-        stop = [MaxRuntime(self._budget)]
+        stop: list[Any] = [MaxRuntime(self._budget)]
         if self._iterations is not None:
             stop.append(MaxIterations(self._iterations))
-        found = solve(
-            _model(scenario, tasks, prize),
-            MultipleCriteria(stop),
-            seed=self._seed % 2**32,
-            collect_stats=False,
-            display=False,
-            params=SolveParams(
-                penalty=PenaltyParams(max_penalty=WARP * prize),
-                neighbourhood=NeighbourhoodParams(num_neighbours=NEIGHBOURS),
-            ),
+        params = SolveParams(
+            penalty=PenaltyParams(max_penalty=WARP * prize),
+            neighbourhood=NeighbourhoodParams(num_neighbours=NEIGHBOURS),
         )
+        model = _model(scenario, tasks, prize)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", PenaltyBoundWarning)  # it is meant to stay at its bound if it gets there
+            found = solve(
+                model, MultipleCriteria(stop), self._seed % 2**32, collect_stats=False, display=False, params=params
+            )
         routes: list[list[int]] = [[] for _ in range(scenario.num_robots)]
         for route in found.best.routes():
             routes[route.vehicle_type()] = [int(tasks[stop.idx]) for stop in route if stop.is_client()]
@@ -100,7 +101,9 @@ def _model(scenario: Scenario, tasks: IntArray, prize: int) -> Any:
     places = np.concatenate([scenario.robot_xy, np.zeros((1, 2)), scenario.task_xy[tasks]])
     latest = scenario.deadline.max()
     kinds: dict[tuple[float, float], int] = {}
-    travels, durations, vehicles = [], [], []
+    travels: list[Any] = []
+    durations: list[Any] = []
+    vehicles = []
     for robot in range(scenario.num_robots):
         speed, capacity = float(scenario.speed[robot]), float(scenario.capacity[robot])
         if (speed, capacity) not in kinds:

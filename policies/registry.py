@@ -104,17 +104,17 @@ METHODS: dict[str, Method] = {
         lambda options: PolicySolver(EarliestDeadlinePolicy, options, "edf"),
     ),
     "big-mrta": Method(
-        "matching of robots and tasks at each decision",
+        "a maximum-weight matching of robots and tasks at each decision",
         lambda options: BigMrtaSolver(),
         extra="solvers",
     ),
     "exact": Method(
-        "the most tasks, proven; for small missions",
+        "as many tasks as possible, proven; for small missions",
         lambda options: ExactSolver(budget=options.budget or EXACT_BUDGET),
         extra="solvers",
     ),
     "pyvrp": Method(
-        "the PyVRP solver",
+        "the routing solver PyVRP, which searches until the budget is spent",
         lambda options: PyVrpSolver(seed=options.seed, budget=options.budget or PYVRP_BUDGET),
         extra="pyvrp",
     ),

@@ -93,7 +93,7 @@ def _dual_bound(shares: list[FloatArray], possible: npt.NDArray[np.bool_], secon
         options={"time_limit": seconds},
     )  # fmt: skip
     if found.status != 0:
-        return num_tasks
+        return int(num_tasks)
     prices = np.maximum(0.0, -found.ineqlin.marginals)
     worth = np.maximum(0.0, 1.0 - matrix.T @ prices)
-    return math.floor(prices.sum() + worth.sum() + 1e-6)
+    return math.floor(float(prices.sum() + worth.sum()) + 1e-6)

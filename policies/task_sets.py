@@ -147,7 +147,8 @@ def _earliest_of_each(tasks: IntArray, finish: FloatArray) -> IntArray:
     least = np.minimum.reduceat(finish, np.flatnonzero(new))
     which = np.cumsum(new) - 1
     best = np.flatnonzero(finish == least[which])
-    return order[best[np.diff(which[best], prepend=-1) != 0]]
+    first: IntArray = order[best[np.diff(which[best], prepend=-1) != 0]]
+    return first
 
 
 def _part_of(smaller: IntArray, larger: IntArray, bits: int) -> npt.NDArray[np.bool_]:

@@ -80,10 +80,7 @@ class PlanScore(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class PlanJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A plan file: for each robot its tasks in order, and for people its schedule and score.
-
-    The bound is the most tasks that any plan can complete, if the method has proven one.
-    """
+    """A plan file: for each robot its tasks in order, for people its schedule and score, and what no plan exceeds."""
 
     format: Literal["mrta_zoo.plan"]
     version: Literal[1]
@@ -92,7 +89,7 @@ class PlanJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     method: str = ""
     schedule: tuple[tuple[ScheduledTask, ...], ...] | None = None
     score: PlanScore | None = None
-    bound: Index | None = None
+    bound: Index | None = None  # completed tasks
 
 
 _PARTS: dict[str, type[msgspec.Struct]] = {
