@@ -47,8 +47,8 @@ class PlanningFlags:
     samples: int = 64
     """Missions that sample draws in one go; with --budget it goes on drawing."""
     budget: Annotated[float | None, optional("SECONDS")] = None
-    """Seconds a mission for methods that can search for longer. By default they stop by themselves; exact after 60,
-    pyvrp after 5."""
+    """Seconds a mission for methods that can search for longer. By default they stop by themselves; exact after 60
+    at most, pyvrp after 5."""
     seed: int = 0
     """Of everything drawn at random. The same seed gives the same plan, unless a budget cuts the search off."""
     mask_rule: Annotated[MaskRule | None, optional("{feasible,active,unvisited}")] = None

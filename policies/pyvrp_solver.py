@@ -26,6 +26,9 @@ WARP = 2e-5
 """What a model time unit of lateness costs at most during the search, in prizes. The search starts at half of it and
 adapts it, so that it passes through plans that are late, but finds some that are not."""
 NEIGHBOURS = 20
+PATIENCE = 200
+"""Iterations a task without improvement after which hardly any follows; 10 tasks have them in a fraction of a second,
+100 in about 20 seconds."""
 
 
 class PyVrpSolver:
@@ -43,8 +46,9 @@ class PyVrpSolver:
 
     Args:
         seed: of the search, from 0 to `bounds.MAX_SEED`; PyVRP uses its lower 32 bits.
-        budget: seconds a scenario, > 0, not counting what it takes to build the model and the first solution.
-        iterations: stop after so many, too; then the same seed gives the same plan, if the budget suffices.
+        budget: seconds a scenario, > 0, not counting what it takes to build the model and the first solution. It stops
+            earlier if all tasks are done that are within reach, or the search has stalled.
+        iterations: stop after so many, too, >= 1; then the same seed gives the same plan, if the budget suffices.
 
     Raises:
         ConfigError: if an argument is out of range.
@@ -71,10 +75,11 @@ class PyVrpSolver:
         from pyvrp import PenaltyParams, SolveParams, solve
         from pyvrp.exceptions import PenaltyBoundWarning
         from pyvrp.search import NeighbourhoodParams
-        from pyvrp.stop import MaxIterations, MaxRuntime, MultipleCriteria
+        from pyvrp.stop import MaxIterations, MaxRuntime, MultipleCriteria, NoImprovement
 
         prize = RESOLUTION * (scenario.num_robots + 1)
-        stop: list[Any] = [MaxRuntime(self._budget)]
+        stop: list[Any] = [MaxRuntime(self._budget), NoImprovement(PATIENCE * len(tasks))]
+        stop.append(lambda cost: cost < prize)  # all tasks are done
         if self._iterations is not None:
             stop.append(MaxIterations(self._iterations))
         params = SolveParams(

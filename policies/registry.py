@@ -114,7 +114,7 @@ METHODS: dict[str, Method] = {
         extra="solvers",
     ),
     "pyvrp": Method(
-        "the routing solver PyVRP, which searches until the budget is spent",
+        "the routing solver PyVRP, which searches as long as the budget lasts",
         lambda options: PyVrpSolver(seed=options.seed, budget=options.budget or PYVRP_BUDGET),
         extra="pyvrp",
     ),
