@@ -15,7 +15,7 @@ pytest.importorskip("scipy")
 pytest.importorskip("numba")
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.generators import UniformGenerator
+from mrta_zoo.generators import TaptcGenerator, UniformGenerator
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.exact import ExactSolver
 from mrta_zoo.policies.registry import METHODS, make_solver, method_names
@@ -171,14 +171,13 @@ def test_the_relaxation_bounds_what_can_be_completed() -> None:
     assert ExactSolver(max_states=0).solve(scenario).bound == 3
 
 
-@pytest.mark.parametrize("size", [(9, 3), (200, 14)])
-def test_large_scenarios_get_a_plan_and_a_bound(size: tuple[int, int]) -> None:
-    scenario = UniformGenerator(tasks=size[0], robots=size[1], deadline=(50, 300))(np.random.default_rng(1))  # type: ignore[arg-type]
-    plan = ExactSolver(budget=2).solve(scenario)
+def test_a_large_scenario_gets_a_plan_and_a_bound() -> None:
+    scenario = TaptcGenerator(robots=(5, 5), group="tight")(np.random.default_rng(1))
+    plan = ExactSolver(budget=5).solve(scenario)
     score = verify(scenario, plan)
     assert plan.bound is not None
     assert verify(scenario, make_solver("nearest").solve(scenario)).completed <= score.completed <= plan.bound
-    assert plan.bound < scenario.num_tasks or size[0] == 9
+    assert plan.bound < 90  # of 100; PyVRP finds some 55
 
 
 def test_the_same_plan_each_time() -> None:
