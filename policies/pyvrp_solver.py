@@ -6,6 +6,7 @@ Wouda, Lan and Kool, "PyVRP: a high-performance VRP solver package", INFORMS Jou
 from __future__ import annotations
 
 import math
+import time
 import warnings
 from typing import Any
 
@@ -22,13 +23,15 @@ from mrta_zoo.scenario import Scenario
 BUDGET = 5.0
 RESOLUTION = 10**7
 """Model time units until the latest deadline."""
-WARP = 2e-5
-"""What a model time unit of lateness costs at most during the search, in prizes. The search starts at half of it and
-adapts it, so that it passes through plans that are late, but finds some that are not."""
+WARPS = (2e-5, 2e-6, 2e-4)
+"""What a model time unit of lateness costs at most during the search, in prizes. A search starts at half of it and
+adapts it, so that it passes through plans that are late, but finds some that are not. The first value is the best for
+large scenarios; if it starts anew, the search tries the others in turn."""
 NEIGHBOURS = 20
-PATIENCE = 200
-"""Iterations a task without improvement after which hardly any follows; 10 tasks have them in a fraction of a second,
-100 in about 20 seconds."""
+PATIENCE = 2
+"""Iterations for each pair of tasks without improvement, after which hardly any follows and the search starts anew."""
+SEARCHES = 20
+"""How often it starts at most."""
 
 
 class PyVrpSolver:
@@ -45,9 +48,9 @@ class PyVrpSolver:
     from the plan. What is planned is finished by its deadline, whatever the mask rule.
 
     Args:
-        seed: of the search, from 0 to `bounds.MAX_SEED`; PyVRP uses its lower 32 bits.
+        seed: of the search, from 0 to `bounds.MAX_SEED`; PyVRP's own have 32 bits.
         budget: seconds a scenario, > 0, not counting what it takes to build the model and the first solution. It stops
-            earlier if all tasks are done that are within reach, or the search has stalled.
+            earlier if all tasks are done that are within reach, or several searches have stalled.
         iterations: stop after so many, too, >= 1; then the same seed gives the same plan, if the budget suffices.
 
     Raises:
@@ -78,23 +81,33 @@ class PyVrpSolver:
         from pyvrp.stop import MaxIterations, MaxRuntime, MultipleCriteria, NoImprovement
 
         prize = RESOLUTION * (scenario.num_robots + 1)
-        stop: list[Any] = [MaxRuntime(self._budget), NoImprovement(PATIENCE * len(tasks))]
-        stop.append(lambda cost: cost < prize)  # all tasks are done
-        if self._iterations is not None:
-            stop.append(MaxIterations(self._iterations))
-        params = SolveParams(
-            penalty=PenaltyParams(max_penalty=WARP * prize),
-            neighbourhood=NeighbourhoodParams(num_neighbours=NEIGHBOURS),
-        )
         model = _model(scenario, tasks, prize)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", PenaltyBoundWarning)  # it is meant to stay at its bound if it gets there
-            found = solve(
-                model, MultipleCriteria(stop), self._seed % 2**32, collect_stats=False, display=False, params=params
+        stop_at, left = time.perf_counter() + self._budget, self._iterations or 2**62
+        best = None
+        for search in range(SEARCHES):
+            stop: list[Any] = [
+                MaxRuntime(max(0.0, stop_at - time.perf_counter())),
+                MaxIterations(left),
+                NoImprovement(PATIENCE * len(tasks) ** 2),
+                lambda cost: cost < prize,  # all tasks are done
+            ]
+            seed = (self._seed * SEARCHES + search) % 2**32
+            params = SolveParams(
+                penalty=PenaltyParams(max_penalty=WARPS[search % len(WARPS)] * prize),
+                neighbourhood=NeighbourhoodParams(num_neighbours=NEIGHBOURS),
             )
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", PenaltyBoundWarning)  # it may stay at its bound
+                found = solve(model, MultipleCriteria(stop), seed, collect_stats=False, display=False, params=params)
+            if best is None or found.cost() < best.cost():
+                best = found
+            left -= found.num_iterations
+            if best.cost() < prize or left <= 0 or time.perf_counter() >= stop_at:
+                break
+        assert best is not None
         routes: list[list[int]] = [[] for _ in range(scenario.num_robots)]
-        for route in found.best.routes():
-            routes[route.vehicle_type()] = [int(tasks[stop.idx]) for stop in route if stop.is_client()]
+        for route in best.best.routes():
+            routes[route.vehicle_type()] = [int(tasks[visit.idx]) for visit in route if visit.is_client()]
         return routes
 
 
