@@ -28,7 +28,7 @@ def test_every_method_plans_and_signs(name: str) -> None:
     skip_unless_installed(name)
     solver = make_solver(name, seed=3)
     assert isinstance(solver, Solver)
-    for scenario in seeded_scenarios(1, 10):
+    for scenario in seeded_scenarios(1, 10, max_tasks=8):
         plan = solver.solve(scenario)
         assert (plan.scenario, plan.method) == (scenario.name, name)
         assert verify(scenario, plan) == verify(scenario, solver.solve(scenario))
