@@ -15,24 +15,32 @@ from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import optional, parse
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.runner import Solved, evaluate, solve_and_score
-from mrta_zoo.eval.schedule import schedule_table, totals
+from mrta_zoo.eval.schedule import proven, schedule_table, totals
 from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import Case, PlanScore, ScheduledTask, read_cases, read_scenario, write_plan
 from mrta_zoo.io.records import write_records
 from mrta_zoo.io.taptc import find_agent_file
 from mrta_zoo.policies.options import Decode
+from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.protocol import Solver
-from mrta_zoo.policies.registry import make_solver
+from mrta_zoo.policies.registry import METHODS, make_solver, method_names
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.suite import builtin_suite
 
 BUILTIN = "builtin"
 
+TRAINED_HELP = "a policy's .safetensors file, or the folder of a training run"
+METHOD_HELP = (
+    "; ".join(f"{name}: {method.summary}" for name, method in METHODS.items())
+    + f"; {', '.join(pretrained_names())}: trained, ship with the package; {TRAINED_HELP}."
+)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlanningFlags:
-    """How methods plan. Each method uses what it can: heuristics only the mask rule (and random the seed)."""
+    """How methods plan. Each method uses what it can: heuristics only the mask rule (and random the seed), exact only
+    the budget, pyvrp the budget and the seed, big-mrta nothing."""
 
     decode: Annotated[Decode | None, optional("{greedy,sample}")] = None
     """How learned methods choose: greedy takes the likeliest task each time; sample takes the best of several drawn
@@ -40,12 +48,14 @@ class PlanningFlags:
     samples: int = 64
     """Missions that sample draws in one go; with --budget it goes on drawing."""
     budget: Annotated[float | None, optional("SECONDS")] = None
-    """Seconds a mission for methods that can search for longer. By default they stop by themselves."""
+    """Seconds a mission for methods that can search for longer. By default they stop by themselves; exact after 60
+    at most, pyvrp after 5."""
     seed: int = 0
-    """Of everything drawn at random. The same seed gives the same plan."""
+    """Of everything drawn at random. The same seed gives the same plan, unless a budget cuts the search off."""
     mask_rule: Annotated[MaskRule | None, optional("{feasible,active,unvisited}")] = None
     """What a robot may choose: feasible, what it can finish by the deadline; active, whose deadline has not passed;
-    unvisited, anything not yet taken. By default feasible or, for a trained policy, what it was trained under."""
+    unvisited, anything not yet taken. By default feasible or, for a trained policy, what it was trained under.
+    big-mrta, exact and pyvrp only plan what is finished by its deadline."""
     threads: int = 1
     """CPU threads for learned methods. One is as fast as several for single missions, and timings compare."""
 
@@ -75,9 +85,7 @@ class Solve:
     """The mission: a TAPTC task file, or a scenario in .json or .csv."""
     agents: Annotated[Path | None, optional("AGENTFILE")] = None
     """The robots: a TAPTC agent file, or .csv. Without it they are in TASKFILE or, for TAPTC, in agent/ beside it."""
-    method: Annotated[str, arg(metavar="METHOD")] = "capam-plus"
-    """random, nearest, edf (earliest deadline), capam or capam-plus (trained, ship with the package), a policy's
-    .safetensors file, or the folder of a training run."""
+    method: Annotated[str, arg(metavar="METHOD", help=METHOD_HELP)] = "capam-plus"
     out: Annotated[Path | None, optional("PLAN.json")] = None
     """Write routes, schedule and score here, as JSON."""
     plot: Annotated[Path | None, optional("PLAN.png")] = None
@@ -117,6 +125,8 @@ def solve_command(argv: Sequence[str]) -> None:
     )
     console.print(schedule_table(scenario, solved.score))
     console.print(totals(solved.score), soft_wrap=True)
+    if known := proven(solved.score, solved.plan.bound):
+        console.print(known, soft_wrap=True)
     for path, what in ((command.out, "plan"), (command.plot, "picture")):
         if path:
             console.print(f"{what} written to {path}", soft_wrap=True)
@@ -165,8 +175,9 @@ class Eval:
     cases: Annotated[str, arg(metavar="DIR|builtin")]
     """A folder of cases (TAPTC: group*/NAME.txt with agent/NAME.txt or agent/a{n}i0{i}.txt; or .json or .csv
     scenarios), or builtin: 96 drawn cases with 100 tasks and 2 to 7 robots."""
-    methods: Annotated[str, arg(metavar="METHOD,METHOD,…")] = "random,nearest,edf,capam,capam-plus"
-    """What to compare: random, nearest, edf, capam, capam-plus, .safetensors files and folders of training runs."""
+    methods: Annotated[
+        str, arg(metavar="METHOD,METHOD,…", help=f"What to compare: {', '.join(method_names())}, {TRAINED_HELP}.")
+    ] = "random,nearest,edf,capam,capam-plus"
     out: Annotated[Path | None, optional("ROWS.csv")] = None
     """Write the rows here, once all are known: case, method, tasks, robots, completed, completion (0 to 1), cost,
     distance, makespan, seconds."""

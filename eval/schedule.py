@@ -31,6 +31,15 @@ def schedule_table(scenario: Scenario, score: Score) -> Table:
     return table
 
 
+def proven(score: Score, bound: int | None) -> str:
+    """What is known of the best plan, on a line, given the most tasks that any plan can complete; empty if nothing."""
+    if bound is None:
+        return ""
+    if score.completed == bound:
+        return "proven optimal: no plan completes more tasks"
+    return f"no plan completes more than {bound} tasks"
+
+
 def totals(score: Score) -> str:
     """All scores, on two lines."""
     visited = sum(len(visits) for visits in score.schedule)

@@ -15,11 +15,13 @@ class Plan:
         routes: one tuple of task indices for each robot of the scenario; empty if the robot stays where it is.
         scenario: name of the scenario it was made for.
         method: name of the method that made it.
+        bound: the most tasks that any plan can complete, as the method has proven; None if it proved nothing.
     """
 
     routes: tuple[tuple[int, ...], ...]
     scenario: str = ""
     method: str = ""
+    bound: int | None = None
 
     @classmethod
     def of(cls, routes: Sequence[Sequence[int]], scenario: str = "", method: str = "") -> Plan:

@@ -29,7 +29,7 @@ class SolverOptions:
         samples: missions that "sample" draws in one go, from 1 to `MAX_SAMPLES`.
         budget: seconds a scenario that methods which search may take, > 0; None leaves it to the method.
         mask_rule: what robots may choose, see `rules.MaskRule`. None is "feasible" or, for learned methods, the rule
-            they were trained under.
+            they were trained under. Solvers that plan only what is in time do not need it.
 
     Raises:
         ConfigError: if a value is out of range.

@@ -14,10 +14,15 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.extras import require
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.aec_loop import run_in_environment
+from mrta_zoo.policies.big_mrta import BigMrtaSolver
+from mrta_zoo.policies.exact import BUDGET as EXACT_BUDGET
+from mrta_zoo.policies.exact import ExactSolver
 from mrta_zoo.policies.heuristics import EarliestDeadlinePolicy, NearestPolicy, RandomPolicy
 from mrta_zoo.policies.options import Decode, SolverOptions
 from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.protocol import Policy, Solver
+from mrta_zoo.policies.pyvrp_solver import BUDGET as PYVRP_BUDGET
+from mrta_zoo.policies.pyvrp_solver import PyVrpSolver
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
 
@@ -110,8 +115,23 @@ METHODS: dict[str, Method] = {
         "the feasible task with the earliest deadline",
         lambda options: PolicySolver(EarliestDeadlinePolicy, options, "edf"),
     ),
+    "big-mrta": Method(
+        "a maximum-weight matching of robots and tasks at each decision",
+        lambda options: BigMrtaSolver(),
+        extra="solvers",
+    ),
     "ils": Method("iterated local search", _ils, extra="solvers"),
     "eils": Method("local search with strings removed and refilled, accepted as in annealing", _eils, extra="solvers"),
+    "exact": Method(
+        "as many tasks as possible, proven; for small missions",
+        lambda options: ExactSolver(budget=options.budget or EXACT_BUDGET),
+        extra="solvers",
+    ),
+    "pyvrp": Method(
+        "the routing solver PyVRP, which searches as long as the budget lasts",
+        lambda options: PyVrpSolver(seed=options.seed, budget=options.budget or PYVRP_BUDGET),
+        extra="pyvrp",
+    ),
 }
 """Methods that need no training. The policies that ship with the package are methods, too: see `method_names`."""
 

@@ -101,6 +101,19 @@ def test_solve_prints_and_writes_the_verified_plan(cases: Path, tmp_path: Path, 
     assert output.err == ""
 
 
+@pytest.mark.parametrize(
+    ("budget", "says"), [("20", "proven optimal: no plan completes more tasks"), ("1e-9", "no plan")]
+)
+def test_solve_prints_what_is_proven(cases: Path, tmp_path: Path, budget: str, says: str, capsys: Captured) -> None:
+    pytest.importorskip("scipy")
+    pytest.importorskip("numba")
+    task_file, out = next((cases / "group1").glob("*.txt")), tmp_path / "plan.json"
+    assert main(["solve", str(task_file), "--method", "exact", "--budget", budget, "--out", str(out)]) == 0
+    assert says in capsys.readouterr().out
+    document = json.loads(out.read_text())
+    assert document["bound"] >= document["score"]["completed"]
+
+
 def test_solve_reads_json_csv_and_named_agents(tmp_path: Path, capsys: Captured) -> None:
     scenario = TaptcGenerator(tasks=(9, 9), robots=(2, 2))(np.random.default_rng(2), "mission")
     for suffix in ("json", "csv", "txt"):

@@ -80,7 +80,7 @@ class PlanScore(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class PlanJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A plan file: for each robot its tasks in order, and for people its schedule and score."""
+    """A plan file: for each robot its tasks in order, for people its schedule and score, and what no plan exceeds."""
 
     format: Literal["mrta_zoo.plan"]
     version: Literal[1]
@@ -89,6 +89,7 @@ class PlanJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     method: str = ""
     schedule: tuple[tuple[ScheduledTask, ...], ...] | None = None
     score: PlanScore | None = None
+    bound: Index | None = None  # completed tasks
 
 
 _PARTS: dict[str, type[msgspec.Struct]] = {
@@ -163,7 +164,7 @@ def read_plan(path: StrPath) -> Plan:
         PlanError: if the file is missing or malformed.
     """
     data = read_document(path, PlanJson, _PARTS, PlanError)
-    return Plan(routes=data.routes, scenario=data.scenario, method=data.method)
+    return Plan(routes=data.routes, scenario=data.scenario, method=data.method, bound=data.bound)
 
 
 def write_plan(
@@ -185,6 +186,8 @@ def write_plan(
         "method": plan.method,
         "routes": [list(route) for route in plan.routes],
     }
+    if plan.bound is not None:
+        document["bound"] = plan.bound
     if score is not None:
         document["score"] = msgspec.to_builtins(score)
     if schedule is not None:

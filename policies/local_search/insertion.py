@@ -84,7 +84,8 @@ def _best_position(problem: Problem, tours: Tours, task: int, robot: int) -> int
     pace, size = 1.0 / problem.speed[robot], tours.size[robot]
     work, latest = problem.work[robot, task], problem.latest[robot, task]
     place, ready = len(problem.deadline) + robot, 0.0
-    least, best = np.inf, size
+    least = np.inf
+    best: int = size
     for position in range(size):
         following = tours.tasks[robot, position]
         to, onward = problem.distance[place, task], problem.distance[following, task]

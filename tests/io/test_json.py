@@ -66,6 +66,16 @@ def test_robots_from_an_agent_file(tmp_path: Path, name: str, content: str) -> N
         read_scenario(tmp_path / "tasks.json")
 
 
+def test_a_plan_carries_its_bound(tmp_path: Path) -> None:
+    for bound in (None, 0, 14):
+        plan = Plan(((1,), (0, 2)), "small", "hand", bound)
+        write_plan(plan, tmp_path / "plan.json")
+        assert read_plan(tmp_path / "plan.json") == plan
+        document = json.loads((tmp_path / "plan.json").read_text())
+        assert document.get("bound") == bound
+        jsonschema.validate(document, schema("plan"))
+
+
 @pytest.mark.parametrize(("name", "document"), [("scenario", ScenarioJson), ("plan", PlanJson)])
 def test_shipped_schema_is_current(name: str, document: type[ScenarioJson] | type[PlanJson]) -> None:
     """If it is not, write `schema_text(document)` to the file."""

@@ -242,16 +242,27 @@ def test_the_search_is_compiled_once() -> None:
     assert len(before) == 1
 
 
+def on_a_line(places: list[float], last_deadline: float) -> Scenario:
+    """A robot at 0 and tasks without work in a row."""
+    return Scenario(
+        task_xy=[[place, 0] for place in places],
+        deadline=[9.0] * (len(places) - 1) + [last_deadline],
+        workload=[0.0] * len(places),
+        robot_xy=[[0, 0]],
+        capacity=[1],
+    )
+
+
 def test_a_visit_that_rounding_makes_late_without_its_detour_is_dropped() -> None:
     rng = np.random.default_rng(0)
-    via, far = next(
-        (a, b) for a, b in np.sort(rng.random((1000, 2)), axis=1).tolist() if a + (b - a) < b
-    )  # in real numbers both are b
-    scenario = Scenario(
-        task_xy=[[via, 0], [far, 0]], deadline=[far, via + (far - via)], workload=[0, 0], robot_xy=[[0, 0]], capacity=[1],
-    )  # fmt: skip
-    problem, tours = begun(scenario, [0, 1])
-    assert route(tours) == [0, 1]
-    remove(problem, tours, 0, 0, 1)
+    for _ in range(1000):  # until the way by all places is shorter than the straight one, by rounding
+        places = np.sort(rng.exponential(size=6)).tolist()
+        by_all = verify(on_a_line(places, 9.0), Plan.of([range(6)])).makespan
+        if by_all < verify(on_a_line(places, 9.0), Plan.of([[5]])).makespan:
+            break
+    scenario = on_a_line(places, by_all)
+    problem, tours = begun(scenario, list(range(6)))
+    assert route(tours) == [0, 1, 2, 3, 4, 5]
+    remove(problem, tours, 0, 0, 5)
     assert route(tours) == []
     check(problem, scenario, tours)

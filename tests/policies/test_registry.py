@@ -18,14 +18,29 @@ from mrta_zoo.policies.registry import METHODS, make_solver, method_names
 from mrta_zoo.verify import verify
 
 
+def skip_unless_installed(name: str) -> None:
+    for module in extras.EXTRAS[METHODS[name].extra] if METHODS[name].extra else ():  # type: ignore[index]
+        pytest.importorskip(module)
+
+
 @pytest.mark.parametrize("name", METHODS)
 def test_every_method_plans_and_signs(name: str) -> None:
+    skip_unless_installed(name)
     solver = make_solver(name, seed=3)
     assert isinstance(solver, Solver)
-    for scenario in seeded_scenarios(1, 10):
+    for scenario in seeded_scenarios(1, 10, max_tasks=8):
         plan = solver.solve(scenario)
         assert (plan.scenario, plan.method) == (scenario.name, name)
         assert verify(scenario, plan) == verify(scenario, solver.solve(scenario))
+
+
+@pytest.mark.parametrize("name", [name for name, method in METHODS.items() if method.extra])
+def test_a_method_says_which_extra_it_needs(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(extras, "find_spec", lambda name: None)
+    with pytest.raises(
+        MissingExtraError, match=rf'method {name!r} needs .*pip install "mrta_zoo\[{METHODS[name].extra}\]"'
+    ):
+        make_solver(name)
 
 
 def test_a_case_has_the_same_plan_in_any_company() -> None:
@@ -105,8 +120,9 @@ def test_a_folder_without_a_policy_is_an_error(tmp_path: Path) -> None:
         make_solver(str(tmp_path))
 
 
-def test_importing_it_needs_no_torch() -> None:
-    code = "import sys, mrta_zoo.policies.registry as r; r.make_solver('nearest'); assert 'torch' not in sys.modules"
+def test_importing_it_imports_nothing_heavy() -> None:
+    heavy = {"torch", *(module for modules in extras.EXTRAS.values() for module in modules)}
+    code = f"import sys, mrta_zoo.policies.registry as r; r.make_solver('edf'); assert not {heavy} & set(sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
 
 

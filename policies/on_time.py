@@ -1,0 +1,36 @@
+"""Routes without what is late or done already."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+
+from mrta_zoo.rules import finish_time, travel_time
+from mrta_zoo.scenario import Scenario
+
+Routes = tuple[tuple[int, ...], ...]
+"""For each robot its tasks, in order."""
+
+
+def on_time(scenario: Scenario, routes: Sequence[Iterable[int]]) -> Routes:
+    """The routes less the tasks that an earlier robot has or that would be finished late, and the way to them.
+
+    Args:
+        scenario: the scenario.
+        routes: for each robot its tasks, in order.
+    """
+    taken: set[int] = set()
+    kept: list[list[int]] = []
+    for robot, route in enumerate(routes):
+        speed, capacity = float(scenario.speed[robot]), float(scenario.capacity[robot])
+        (x, y), ready = scenario.robot_xy[robot].tolist(), 0.0
+        kept.append([])
+        for task in route:
+            to_x, to_y = scenario.task_xy[task].tolist()
+            travel = travel_time(to_x - x, to_y - y, speed, math.sqrt)
+            finish = finish_time(ready, travel, float(scenario.workload[task]) / capacity)
+            if task not in taken and finish <= scenario.deadline[task]:
+                taken.add(task)
+                kept[-1].append(int(task))
+                x, y, ready = to_x, to_y, finish
+    return tuple(tuple(route) for route in kept)
