@@ -6,7 +6,7 @@ from typing import Literal
 
 import numpy as np
 
-from mrta_zoo.generators import Mixture, TaptcGenerator, UniformGenerator
+from mrta_zoo.generators import TaptcGenerator, UniformGenerator
 from mrta_zoo.scenario import Scenario
 
 SUITE_SEED = 20220523
