@@ -11,6 +11,7 @@ from typing import Any
 
 import matplotlib
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 INK, FAINT, GRID = "#22303c", "#5d6874", "#e3e7eb"
 
@@ -30,7 +31,7 @@ STYLES = {
     "capam-plus": ("#009e73", "s"),
 }
 """Colour and marker by method. Okabe and Ito's colours, which colour-blind people can tell apart, greys for the simple
-heuristics, and shades of one blue for the variants of one network; every figure names its methods beside the marks, too."""
+heuristics, and shades of one blue for the variants of one network; figures name their methods beside the marks, too."""
 
 OTHERS = (("#6a3d9a", "p"), ("#7f5a2b", "d"), ("#4d4d4d", "H"), ("#b5a100", "8"), ("#1f4e79", "*"))
 """For methods of the user's, in order."""
@@ -46,14 +47,15 @@ def style_of(method: str, methods: Sequence[str]) -> tuple[str, str]:
 
 def new_figure(width: float, height: float) -> Figure:
     """An empty figure, sides in inches."""
-    return Figure(figsize=(width, height), facecolor="white", layout="constrained")
+    layout = ConstrainedLayoutEngine(h_pad=0.06, w_pad=0.06, hspace=0.06, wspace=0.05)
+    return Figure(figsize=(width, height), facecolor="white", layout=layout)
 
 
 def plain(axes: Any, grid: str = "x") -> None:
     """No frame, a light grid along `grid` ("x", "y" or "both"), quiet labels."""
     axes.grid(axis=grid, color=GRID, linewidth=0.9)
     axes.set_axisbelow(True)
-    axes.tick_params(colors=FAINT, labelsize=8.5, length=0)
+    axes.tick_params(which="both", colors=FAINT, labelsize=8.5, length=0)
     for spine in axes.spines.values():
         spine.set_visible(False)
 

@@ -23,6 +23,8 @@ SIGNIFICANT = 0.05
 """Adjusted p-values below it are called significant."""
 LEAST = 5
 """Values that an interval or a test needs."""
+LEAST_OF_STRATUM = 3
+"""Values that every group needs for resampling within groups."""
 RESAMPLES = 9999
 MOST_T = 10_000.0
 """Size of a t statistic up to which SciPy inverts the noncentral t distribution in a moment."""
@@ -85,7 +87,7 @@ def estimate_mean(values: Sequence[float] | Values, seed: int, strata: Sequence[
         values: one for each case, at least one.
         seed: of the resampling.
         strata: group of each value, such as the case's number of robots, which is part of the design and no chance:
-            resampling stays within groups. Left aside if a group has fewer than `LEAST` values.
+            resampling stays within groups. Left aside if a group has fewer than `LEAST_OF_STRATUM` values.
     """
     array = np.asarray(values, dtype=float)
     mean = float(array.mean())
@@ -158,6 +160,6 @@ def _split(values: Values, strata: Sequence[Hashable] | None) -> tuple[Values, .
     members: dict[Hashable, list[float]] = {}
     for value, stratum in zip(values.tolist(), strata, strict=True):
         members.setdefault(stratum, []).append(value)
-    if min(map(len, members.values())) < LEAST:
+    if min(map(len, members.values())) < LEAST_OF_STRATUM:
         return (values,)
     return tuple(map(np.asarray, members.values()))

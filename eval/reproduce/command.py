@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import astuple, dataclass
 from pathlib import Path
@@ -11,7 +10,8 @@ from typing import Annotated
 from tyro.conf import arg
 
 from mrta_zoo import __version__
-from mrta_zoo.errors import ConfigError, MissingExtraError, ScenarioError
+from mrta_zoo.errors import ConfigError, MissingExtraError
+from mrta_zoo.eval.case_choice import read_all, shown_cases
 from mrta_zoo.eval.console import results_console
 from mrta_zoo.eval.experiment import Manifest, make_manifest, measure, open_experiment
 from mrta_zoo.eval.flags import names, optional, parse
@@ -31,12 +31,11 @@ from mrta_zoo.eval.rows_file import RowsFile
 from mrta_zoo.eval.runner import Solved, row_of
 from mrta_zoo.eval.statistics import LEVEL, RESAMPLES
 from mrta_zoo.eval.threads import cpu_threads
-from mrta_zoo.io import Case, read_cases
+from mrta_zoo.io import Case
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import make_solver, method_names
-from mrta_zoo.suite import builtin_suite, double_suite, small_suite
+from mrta_zoo.suite import small_suite
 
-BUILTIN = "builtin"
 USUAL = (
     "random", "nearest", "edf", "big-mrta", "ils", "eils", "pyvrp",
     "am", "capam-p1", "capam-p2", "capam", "capam-plus",
@@ -159,8 +158,8 @@ def _made(
         *((f"Weights of {method}", f"SHA-256 {digest}") for method, digest in manifest.weights.items()),
         (
             "Scores",
-            "Every plan was scored by the package’s verifier, which shares no code with the methods or the environment. A "
-            "task counts as completed if its work is finished by its deadline.",
+            "Every plan was scored by the package’s verifier, which shares no code with the methods or the "
+            "environment. A task counts as completed if its work is finished by its deadline.",
         ),
         ("Trained methods", "one greedy pass, no search"),
         (
@@ -211,31 +210,6 @@ def reference_of(methods: Sequence[str], asked: str | None) -> str:
     if asked is not None and asked not in methods:
         raise ConfigError(f"against is {asked!r}; expected one of the methods that are run: {', '.join(methods)}")
     return asked or (AGAINST if AGAINST in methods else methods[-1])
-
-
-def read_all(cases: str) -> list[Case]:
-    """The cases of one or more folders, or the built-in ones.
-
-    Raises:
-        ConfigError: if there is a folder twice, or none.
-        ScenarioError: if a folder cannot be read, or two hold cases of the same name.
-    """
-    if cases == BUILTIN:
-        return [Case(scenario.name, scenario) for scenario in (*builtin_suite(), *double_suite())]
-    found: dict[str, Case] = {}
-    for folder in names(cases, "folders", "folders", "taptc/n100,taptc/n200"):
-        for case in read_cases(folder):
-            if case.name in found:
-                raise ScenarioError(
-                    f"{folder}: a case is called {case.name!r}, as in another folder; expected different names"
-                )
-            found[case.name] = case
-    return list(found.values())
-
-
-def shown_cases(cases: str) -> str:
-    """The folders' own names: where they lie is nobody's business, and the digest says what is in them."""
-    return cases if cases == BUILTIN else ",".join(os.path.basename(os.path.abspath(each)) for each in cases.split(","))
 
 
 def _solver(method: str, command: Reproduce) -> Solver:

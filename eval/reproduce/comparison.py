@@ -81,18 +81,19 @@ def comparison_section(study: Study, comparisons: list[Comparison]) -> Section:
     for tasks in study.sizes:
         groups = study.groups(tasks)
         chosen = [each for each in comparisons if each.group in groups]
-        data = _data(chosen)
         pictures.append(
             Picture(
                 name=f"differences_{tasks}",
-                caption=f"Mean of {study.against} minus the method at the left, in percentage points of the {tasks} tasks of a "
-                f"case, over the same cases. {case_counts(study, tasks)} Bar: {wording.INTERVAL} (BCa bootstrap); filled "
-                f"mark: significant, Holm-adjusted paired t-test p < {SIGNIFICANT}; hollow: not significant; arrow: "
-                "beyond the axis, with its value.",
+                caption=f"Mean of {study.against} minus the method at the left, in percentage points of the {tasks} "
+                f"tasks of a case, over the same cases. {case_counts(study, tasks)} Bar: {wording.INTERVAL} (BCa "
+                f"bootstrap); filled mark: significant, Holm-adjusted paired t-test p < {SIGNIFICANT}; hollow: not "
+                "significant; arrow: beyond the axis, with its value.",
                 figure=draw_differences(
-                    study, groups, {(each.method, each.group): (each.test.difference, each.significant) for each in chosen}
+                    study,
+                    groups,
+                    {(each.method, each.group): (each.test.difference, each.significant) for each in chosen},
                 ),
-                data=data,
+                data=_data(chosen),
             )
         )  # fmt: skip
         tables.append(_overall_table(study, tasks, [each for each in chosen if each.group == groups[0]]))
@@ -107,8 +108,8 @@ def comparison_section(study: Study, comparisons: list[Comparison]) -> Section:
         "Holm’s method, once for all comparisons over all cases of a size, once for all those by number of robots. "
         "d_z is the mean difference in standard deviations of the differences (Cohen; 0.2 is often called small, 0.5 "
         "medium, 0.8 large).",
-        "What is tested is whether these plans differ on cases like these. A trained method stands here with one set of "
-        "weights, so nothing follows for how it would do when trained again.",
+        "What is tested is whether these plans differ on cases like these. A trained method stands here with one set "
+        "of weights, so nothing follows for how it would do when trained again.",
     )
     return Section(title=title, text=text, pictures=tuple(pictures), tables=tuple(tables))
 
@@ -135,10 +136,10 @@ def _overall_table(study: Study, tasks: int, chosen: list[Comparison]) -> Table:
             }
         )
     caption = (
-        f"{study.against} minus each method over all cases with {tasks} tasks: mean difference in percentage points and "
-        f"d_z, each with its {wording.INTERVAL} in brackets (BCa bootstrap within each number of robots; noncentral t); "
-        f"cases in which {study.against} completes more, equally many, fewer tasks; Holm-adjusted p-values, two-sided. "
-        f"n = {study.cases(study.groups(tasks)[0])} pairs."
+        f"{study.against} minus each method over all cases with {tasks} tasks: mean difference in percentage points "
+        f"and d_z, each with its {wording.INTERVAL} in brackets (BCa bootstrap within each number of robots; "
+        f"noncentral t); cases in which {study.against} completes more, equally many, fewer tasks; Holm-adjusted "
+        f"p-values, two-sided. n = {study.cases(study.groups(tasks)[0])} pairs."
     )
     return Table(name=f"paired_tests_{tasks}", caption=caption, shown=pd.DataFrame(shown), data=_data(chosen))
 
@@ -154,9 +155,9 @@ def _by_robots_table(study: Study, tasks: int, chosen: list[Comparison]) -> Tabl
         if each.significant:
             bold.add((list(cells).index(each.method), list(line).index(each.group.label)))
     caption = (
-        f"{study.against} minus each method by number of robots, {tasks} tasks (as Table III of the paper): mean difference "
-        f"in percentage points, and the Holm-adjusted p-value of the paired t-test in parentheses. {case_counts(study, tasks)} "
-        f"Bold: p < {SIGNIFICANT}. Intervals, d_z and Wilcoxon tests are in the CSV file."
+        f"{study.against} minus each method by number of robots, {tasks} tasks (as Table III of the paper): mean "
+        "difference in percentage points, and the Holm-adjusted p-value of the paired t-test in parentheses. "
+        f"{case_counts(study, tasks)} Bold: p < {SIGNIFICANT}. Intervals, d_z and Wilcoxon tests are in the CSV file."
     )  # fmt: skip
     return Table(
         name=f"paired_tests_{tasks}_by_robots",
@@ -179,8 +180,8 @@ def _paper_table() -> Table:
     ]
     return Table(
         name="paired_tests_paper",
-        caption=f"The paper’s Table III ({paper.SOURCE}): p-values of paired t-tests on 24 cases each with 100 tasks, not "
-        "adjusted; CapAM was ahead in each. The paper gives no sizes of differences.",
+        caption=f"The paper’s Table III ({paper.SOURCE}): p-values of paired t-tests on 24 cases each with 100 tasks, "
+        "not adjusted. The paper gives no sizes of differences.",
         shown=pd.DataFrame(shown),
         data=pd.DataFrame(data),
     )

@@ -33,6 +33,7 @@ def _panels(study: Study, groups: Sequence[Group], width: float) -> tuple[Figure
         unused.remove()
     for axes, group in zip(panels, groups, strict=False):
         plain(axes)
+        axes.locator_params(axis="x", nbins=5)
         axes.set_title(group.label, fontsize=10, color=INK, loc="left")
         axes.set_ylim(len(study.methods) - 0.45, -0.55)
     for line in grid[:, 0]:
@@ -95,7 +96,7 @@ def draw_differences(
             if abs(estimate.mean) > limit:
                 side = math.copysign(1, estimate.mean)
                 axes.annotate(
-                    f"{estimate.mean:+.1f}".replace("-", "−"), (side * limit, row), (side * limit * 0.62, row),
+                    wording.number(estimate.mean, signed=True), (side * limit, row), (side * limit * 0.62, row),
                     color=INK, fontsize=8.5, ha="center", va="center",
                     arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.4},
                 )  # fmt: skip

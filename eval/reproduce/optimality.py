@@ -91,6 +91,7 @@ def _beaten(impossible: pd.DataFrame) -> str:
         return f"No method ever completed more tasks than {EXACT} proved possible, as it must be."
     names = wording.listed([f"{line.method} on {line.case}" for line in impossible.head(5).itertuples()])
     return (
-        f"ERROR: {wording.counted(len(impossible), 'plan')} completed more tasks than {EXACT} proved possible ({names}): "
-        "there is a mistake in the exact solver, the verifier or the rules, and this section must not be used."
+        f"ERROR: {wording.counted(len(impossible), 'plan')} completed more tasks than {EXACT} proved possible "
+        f"({names}): there is a mistake in the exact solver, the verifier or the rules, and this section must not "
+        "be used."
     )

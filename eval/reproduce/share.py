@@ -25,8 +25,8 @@ def share_section(study: Study) -> Section:
     text = [_basis(with_reference, cases)]
     if beaten:
         text.append(
-            f"In {wording.counted(beaten, 'case')} a method run here completed more tasks than the reference table knows "
-            "of; shares above 100 % are such cases."
+            f"In {wording.counted(beaten, 'case')} a method run here completed more tasks than the reference table "
+            "knows of; shares above 100 % are such cases."
         )
     if not known.all():
         text.append(

@@ -23,9 +23,9 @@ def summary(study: Study, comparisons: Sequence[Comparison]) -> tuple[str, ...]:
         points += _by_robots(study, tasks, [each for each in comparisons if each.group in by_robots], chosen)
     if comparisons:
         points.append(
-            f"Significant means p < {SIGNIFICANT} in a paired t-test over the cases, after Holm’s adjustment for the number "
-            "of comparisons. Each trained method is one set of weights: the tests speak of these weights, not of every "
-            "training."
+            f"Significant means p < {SIGNIFICANT} in a paired t-test over the cases, after Holm’s adjustment for the "
+            "number of comparisons. Each trained method is one set of weights: the tests speak of these weights, "
+            "not of every training."
         )
     points.append(_times(study))
     if study.small is not None and (study.small["method"] == EXACT).any():
@@ -56,7 +56,8 @@ def _against(study: Study, tasks: int, chosen: Sequence[Comparison]) -> str:
     better = [named(each) for each in chosen if each.significant and each.test.difference.mean > 0]
     worse = [named(each) for each in chosen if each.significant and each.test.difference.mean < 0]
     equal = [
-        f"{each.method} ({wording.number(each.test.difference.mean, signed=True)}, {each.test.note or 'p = ' + wording.p_value(each.t_p)})"
+        f"{each.method} ({wording.number(each.test.difference.mean, signed=True)}, "
+        f"{each.test.note or 'p = ' + wording.p_value(each.t_p)})"
         for each in chosen
         if not each.significant
     ]

@@ -42,7 +42,8 @@ def timing_section(study: Study) -> Section:
         pictures=(
             Picture(
                 name="planning_time",
-                caption=f"Time to plan a whole mission. Mark and number: mean; line: fastest to slowest case. n = {counts}.",
+                caption="Time to plan a whole mission. Mark and number: mean; line: fastest to slowest case. "
+                f"n = {counts}.",
                 figure=draw_seconds(study, times),
                 data=times,
             ),
