@@ -109,8 +109,8 @@ def converge_command(argv: Sequence[str]) -> None:
         )  # fmt: skip
     console.print(table)
     console.print(
-        "Intervals are over cases, which are the same for all methods: a difference between two methods can be sure even "
-        "where their intervals overlap (mrta-zoo reproduce tests it).",
+        "Intervals are over cases, which are the same for all methods: a difference between two methods can be sure "
+        "even where their intervals overlap (mrta-zoo reproduce tests it).",
         soft_wrap=True,
     )
     console.print(f"figure written to {command.out / 'curves.png'} and .svg, its data to curves.csv", soft_wrap=True)

@@ -8,10 +8,15 @@ from dataclasses import asdict, dataclass
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 from mrta_zoo.eval.figure_style import FAINT, INK, new_figure, plain, style_of
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.statistics import estimate_mean
+
+NEAR = 2.0
+"""Lines that end within this factor of each other have their names in one column."""
+HALO = [withStroke(linewidth=3, foreground="white")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +68,7 @@ def frame_of_rows(rows: Sequence[BudgetRow]) -> pd.DataFrame:
 def draw_curves(curves: pd.DataFrame) -> Figure:
     """Mean % completed against measured seconds (logarithmic), a panel for each number of tasks, a line a method.
 
-    Methods are named at the end of their lines, one below the other where they would overlap.
+    Methods are named at the end of their lines, one above the other where they would overlap.
     """
     sizes = curves["tasks"].unique().tolist()
     methods = curves["method"].unique().tolist()
@@ -73,22 +78,27 @@ def draw_curves(curves: pd.DataFrame) -> Figure:
         axes.set_xscale("log")
         panel = curves[curves["tasks"] == tasks]
         low, high = panel["mean_seconds"].min(), panel["mean_seconds"].max()
-        axes.set_xlim(low / 1.5, high * (max(high / low, 10) ** 0.22) * 1.3)
+        axes.set_xlim(low / (max(high / low, 10) ** 0.2), high * (max(high / low, 10) ** 0.22) * 1.3)
         ends = []
         for method in dict.fromkeys(panel["method"]):
             line = panel[panel["method"] == method].sort_values("mean_seconds")
             x, y = line["mean_seconds"].to_numpy(), line["mean_percent"].to_numpy()
             colour, marker = style_of(method, methods)
+            with_budget = line["budget"].notna().to_numpy()
+            if with_budget.any():
+                axes.plot(x[with_budget], y[with_budget], "-", marker=marker, color=colour, markersize=6, linewidth=1.8,
+                          zorder=3)  # fmt: skip
+                ends.append((y[with_budget][-1], x[with_budget][-1], method, colour))
+            for at, mean in zip(x[~with_budget], y[~with_budget], strict=True):
+                axes.plot(at, mean, marker, color=colour, markersize=7, markerfacecolor="white", zorder=3)
+                axes.annotate(f"{method},\nno budget", (at, mean), (-8, 0), textcoords="offset points", fontsize=9,
+                              color=INK, ha="right", va="center", zorder=4, path_effects=HALO)  # fmt: skip
             spans = line.dropna(subset=["low", "high"])
-            axes.vlines(spans["mean_seconds"], spans["low"].astype(float), spans["high"].astype(float), color=colour,
-                        linewidth=1.3, alpha=0.7, zorder=2)  # fmt: skip
-            for budgeted, style in ((True, "-"), (False, "")):
-                chosen = line["budget"].notna().to_numpy() == budgeted
-                if chosen.any():
-                    axes.plot(x[chosen], y[chosen], style, marker=marker, color=colour, markersize=6, zorder=3,
-                              linewidth=1.8, markerfacecolor=colour if budgeted else "white",
-                              markeredgewidth=1.4)  # fmt: skip
-                    ends.append((y[chosen][-1], x[chosen][-1], method if budgeted else f"{method}, no budget", colour))
+            axes.errorbar(
+                spans["mean_seconds"], spans["mean_percent"], fmt="none", ecolor=colour, elinewidth=1.2, capsize=3,
+                alpha=0.6, zorder=2,
+                yerr=np.abs(spans[["low", "high"]].astype(float).T.to_numpy() - spans["mean_percent"].to_numpy()),
+            )  # fmt: skip
         _name_ends(axes, ends)
         axes.set_title(f"{tasks} tasks, {panel['cases'].max()} cases", fontsize=10, color=INK, loc="left")
         axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
@@ -101,6 +111,7 @@ def _name_ends(axes: object, ends: Sequence[tuple[float, float, str, str]]) -> N
     """Write names to the right of (y, x), moved apart where they lie closer than a line of text."""
     low, high = axes.get_ylim()  # type: ignore[attr-defined]
     line = (high - low) * 0.042
+    furthest = max((x for _, x, _, _ in ends), default=1.0)
     placed: list[tuple[float, float]] = []
     for y, x, name, colour in sorted(ends):
         at = y
@@ -109,7 +120,7 @@ def _name_ends(axes: object, ends: Sequence[tuple[float, float, str, str]]) -> N
                 at = other_y + line
         placed.append((x, at))
         axes.annotate(  # type: ignore[attr-defined]
-            name, (x, y), (x * 1.12, at), fontsize=9, color=INK, va="center", zorder=4,
+            name, (x, y), (1.12 * (furthest if furthest < NEAR * x else x), at), fontsize=9, color=INK, va="center", zorder=4, path_effects=HALO,
             arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 3}
             if at != y else None,
         )  # fmt: skip
