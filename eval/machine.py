@@ -8,6 +8,8 @@ import time
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
+BUSY = 0.6
+"""Load a core above which times are not to be trusted."""
 LIBRARIES = ("numpy", "torch", "scipy", "numba", "pyvrp", "pandas", "statsmodels", "matplotlib")
 
 
@@ -32,6 +34,11 @@ class Session:
     system: str
     libraries: str
     load: float | None = None
+
+    @property
+    def busy(self) -> bool:
+        """Whether others were at work too, so that times are longer than they would be."""
+        return self.load is not None and self.load > BUSY * self.cores
 
 
 def this_session(threads: int) -> Session:

@@ -114,13 +114,13 @@ def _name_ends(axes: object, ends: Sequence[tuple[float, float, str, str]]) -> N
     furthest = max((x for _, x, _, _ in ends), default=1.0)
     placed: list[tuple[float, float]] = []
     for y, x, name, colour in sorted(ends):
-        at = y
+        at, column = y, furthest if furthest < NEAR * x else x
         for other_x, other_y in placed:
             if abs(np.log10(x / other_x)) < 1.0 and at < other_y + line:
                 at = other_y + line
         placed.append((x, at))
         axes.annotate(  # type: ignore[attr-defined]
-            name, (x, y), (1.12 * (furthest if furthest < NEAR * x else x), at), fontsize=9, color=INK, va="center", zorder=4, path_effects=HALO,
+            name, (x, y), (1.12 * column, at), fontsize=9, color=INK, va="center", zorder=4, path_effects=HALO,
             arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 3}
             if at != y else None,
         )  # fmt: skip

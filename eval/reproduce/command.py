@@ -16,6 +16,7 @@ from mrta_zoo.eval.console import results_console
 from mrta_zoo.eval.experiment import Manifest, make_manifest, measure, open_experiment
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.machine import Session, this_session
+from mrta_zoo.eval.reproduce.all_pairs import compare_all
 from mrta_zoo.eval.reproduce.comparison import compare, comparison_section
 from mrta_zoo.eval.reproduce.completion import completion_section
 from mrta_zoo.eval.reproduce.moments import moments_section
@@ -126,10 +127,11 @@ def reproduce_command(argv: Sequence[str]) -> None:
 def make_report(study: Study, manifest: Manifest, sessions: Sequence[Session], absent: Mapping[str, str]) -> Report:
     """All sections, the summary before them, and how they came about after them."""
     comparisons = compare(study)
+    pairs = {tasks: compare_all(study, tasks) for tasks in study.sizes}
     sections = (
         completion_section(study),
-        comparison_section(study, comparisons),
-        timing_section(study),
+        comparison_section(study, comparisons, pairs),
+        timing_section(study, sessions),
         moments_section(study),
         share_section(study),
         optimality_section(study),
@@ -138,7 +140,7 @@ def make_report(study: Study, manifest: Manifest, sessions: Sequence[Session], a
         title=f"Comparison of {len(study.methods)} methods of multi-robot task allocation"
         if len(study.methods) > 1
         else f"Results of {study.methods[0]} in multi-robot task allocation",
-        summary=summary(study, comparisons),
+        summary=summary(study, comparisons, pairs, sessions),
         sections=sections,
         made=_made(study, manifest, sessions, absent),
     )

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import pandas as pd
 
 from mrta_zoo.eval.reproduce import paper, wording
+from mrta_zoo.eval.reproduce.all_pairs import Pairs, all_pairs_table
 from mrta_zoo.eval.reproduce.completion import case_counts
 from mrta_zoo.eval.reproduce.figures import draw_differences
 from mrta_zoo.eval.reproduce.parts import Picture, Section, Table
@@ -72,8 +74,14 @@ def _test(study: Study, method: str, group: Group) -> PairedTest:
     )
 
 
-def comparison_section(study: Study, comparisons: list[Comparison]) -> Section:
-    """Differences as pictures and tables, with the paper's p-values beside."""
+def comparison_section(study: Study, comparisons: list[Comparison], pairs: Mapping[int, Pairs]) -> Section:
+    """Differences as pictures and tables, with the paper's p-values beside.
+
+    Args:
+        study: what was measured.
+        comparisons: of the reference with the other methods.
+        pairs: any two methods, by number of tasks.
+    """
     title = f"{study.against} against each other method"
     if not comparisons:
         return Section(title=title, text=("Only one method was run, so there is nothing to compare.",))
@@ -99,6 +107,8 @@ def comparison_section(study: Study, comparisons: list[Comparison]) -> Section:
         tables.append(_overall_table(study, tasks, [each for each in chosen if each.group == groups[0]]))
         if len(groups) > 1:
             tables.append(_by_robots_table(study, tasks, [each for each in chosen if each.group != groups[0]]))
+        if len(study.methods) > 2:
+            tables.append(all_pairs_table(study, tasks, pairs[tasks]))
     if study.against == "capam":
         tables.append(_paper_table())
     text = (

@@ -18,8 +18,12 @@ from mrta_zoo.eval.statistics import LEAST, Estimate
 PANELS_A_LINE = 4
 ROW = 0.34
 """Height of a method's row, in inches."""
-FURTHEST = 15.0
+FURTHEST = 10.0
 """Percentage points that an axis of differences shows; what lies beyond is an arrow with its number."""
+
+
+FURTHEST_BEHIND = 25.0
+"""Likewise, that an axis of shares shows below the best."""
 
 
 def _panels(study: Study, groups: Sequence[Group], width: float) -> tuple[Figure, list[Any]]:
@@ -112,17 +116,31 @@ def draw_differences(
 
 
 def draw_intervals(study: Study, tasks: int, column: str, label: str) -> Figure:
-    """Means of a column with intervals, by method and group of the cases with so many tasks."""
+    """Means of a column in % with intervals, by method and group of the cases with so many tasks."""
     groups = study.groups(tasks)
     figure, panels = _panels(study, groups, 2.2)
+    found = {(method, group): estimate for method, group, estimate in study.estimates(tasks, column)}
+    best = max(estimate.mean for estimate in found.values())
+    lows = [e.mean if e.low is None else e.low for e in found.values()]
+    left = min(low for low in [*lows, best] if low >= best - FURTHEST_BEHIND)
+    room = 0.06 * (best - left) or 1.0
     for axes, group in zip(panels, groups, strict=True):
+        axes.set_xlim(left - room, max(best, *(e.high or 0.0 for e in found.values())) + room)
         for row, method in enumerate(study.methods):
-            estimate = study.estimate(group, method, column)
+            estimate = found[method, group]
             colour, marker = style_of(method, study.methods)
+            if estimate.mean < left:
+                at = left - room
+                axes.annotate(
+                    wording.number(estimate.mean), (at, row), (at + 0.3 * (best - left + room), row), color=INK,
+                    fontsize=8.5, ha="center", va="center",
+                    arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 1.4},
+                )  # fmt: skip
+                continue
             if estimate.low is not None and estimate.high is not None:
                 axes.plot([estimate.low, estimate.high], [row, row], color=colour, linewidth=2, zorder=2,
                           solid_capstyle="butt")  # fmt: skip
-            axes.plot(estimate.mean, row, marker, color=colour, markersize=6.5, zorder=3)
+            axes.plot(estimate.mean, row, marker, color=colour, markersize=5.5, zorder=3)
     _name_x(figure, label)
     return figure
 
@@ -133,7 +151,8 @@ def draw_seconds(study: Study, times: pd.DataFrame) -> Figure:
     low, high = times["fastest"].min(), times["slowest"].max()
     for axes, tasks in zip(panels, study.sizes, strict=True):
         axes.set_xscale("log")
-        axes.set_xlim(low / 1.6, high * 3.2)
+        axes.tick_params(which="both", length=0)
+        axes.set_xlim(low / 1.6, high * 5)
         axes.set_title(f"{tasks} tasks", fontsize=10, color=INK, loc="left")
         for row, method in enumerate(study.methods):
             (line,) = times[(times["tasks"] == tasks) & (times["method"] == method)].to_dict("records")

@@ -42,12 +42,18 @@ def share_section(study: Study) -> Section:
             f"Tasks completed, mean % of the tasks of the best known plan, {tasks} tasks, with its {wording.INTERVAL} "
             f"(BCa bootstrap over cases, within each number of robots). {case_counts(shares, tasks)}"
         )
-        table = estimate_table(shares, tasks, "share", f"share_of_best_{tasks}", f"{caption} Bold: the highest.")
+        table = estimate_table(
+            shares,
+            tasks,
+            "share",
+            f"share_of_best_{tasks}",
+            f"{caption} Bold: the highest, be the lead significant or not.",
+        )
         tables.append(table)
         pictures.append(
             Picture(
                 name=f"share_of_best_figure_{tasks}",
-                caption=f"{caption} Mark: mean; bar: interval.",
+                caption=f"{caption} Mark: mean; bar: interval; arrow: below the axis, with the mean.",
                 figure=draw_intervals(shares, tasks, "share", "mean % of the tasks that the best known plan completes"),
                 data=table.data,
             )

@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+from mrta_zoo.eval.machine import Session
 from mrta_zoo.eval.reproduce import wording
+from mrta_zoo.eval.reproduce.all_pairs import Pairs, not_told_apart
 from mrta_zoo.eval.reproduce.comparison import Comparison
 from mrta_zoo.eval.reproduce.optimality import EXACT
 from mrta_zoo.eval.reproduce.study import Group, Study
+from mrta_zoo.eval.reproduce.timing import busy_note
 from mrta_zoo.eval.statistics import SIGNIFICANT
 
+MOST_NAMED = 6
+"""Pairs of methods that one sentence can name."""
 
-def summary(study: Study, comparisons: Sequence[Comparison]) -> tuple[str, ...]:
-    """A sentence or two for each number of tasks, by number of robots, and for planning time."""
+
+def summary(
+    study: Study, comparisons: Sequence[Comparison], pairs: Mapping[int, Pairs], sessions: Sequence[Session]
+) -> tuple[str, ...]:
+    """A few sentences for each number of tasks, by number of robots, and for planning time.
+
+    Args:
+        study: what was measured.
+        comparisons: of the reference with the other methods.
+        pairs: any two methods, by number of tasks.
+        sessions: in which it was measured.
+    """
     points = []
     for tasks in study.sizes:
         whole, *by_robots = study.groups(tasks)
@@ -20,6 +35,7 @@ def summary(study: Study, comparisons: Sequence[Comparison]) -> tuple[str, ...]:
         chosen = [each for each in comparisons if each.group == whole]
         if chosen:
             points.append(_against(study, tasks, chosen))
+        points += _not_told_apart(tasks, pairs[tasks])
         points += _by_robots(study, tasks, [each for each in comparisons if each.group in by_robots], chosen)
     if comparisons:
         points.append(
@@ -27,7 +43,7 @@ def summary(study: Study, comparisons: Sequence[Comparison]) -> tuple[str, ...]:
             "number of comparisons. Each trained method is one set of weights: the tests speak of these weights, "
             "not of every training."
         )
-    points.append(_times(study))
+    points.append(_times(study) + (" " + busy_note(sessions)[0] if busy_note(sessions) else ""))
     if study.small is not None and (study.small["method"] == EXACT).any():
         points.append("For small scenarios the distance to the proven optimum is in the section on the optimality gap.")
     return tuple(points)
@@ -53,6 +69,7 @@ def _against(study: Study, tasks: int, chosen: Sequence[Comparison]) -> str:
         ends = sorted((abs(low), abs(high)))
         return f"{each.method} (by {points}, {wording.INTERVAL} {wording.number(ends[0])} to {wording.number(ends[1])})"
 
+    chosen = sorted(chosen, key=lambda each: abs(each.test.difference.mean))
     better = [named(each) for each in chosen if each.significant and each.test.difference.mean > 0]
     worse = [named(each) for each in chosen if each.significant and each.test.difference.mean < 0]
     equal = [
@@ -84,16 +101,36 @@ def _by_robots(study: Study, tasks: int, chosen: Sequence[Comparison], whole: Se
     sign_of = {each.method: _sign(each) for each in whole}
     stories: dict[str, list[str]] = {}
     for each in chosen:
-        if _sign(each) and _sign(each) != sign_of.get(each.method):
-            direction = "more" if _sign(each) > 0 else "fewer"
+        if _sign(each) != sign_of.get(each.method):
             points = wording.number(abs(each.test.difference.mean))
-            stories.setdefault(each.method, []).append(f"{direction} with {each.group.label} (by {points})")
+            signed = wording.number(each.test.difference.mean, signed=True)
+            told = {
+                1: f"significantly more with {each.group.label} (by {points})",
+                -1: f"significantly fewer with {each.group.label} (by {points})",
+                0: f"no significant difference with {each.group.label} ({signed})",
+            }
+            stories.setdefault(each.method, []).append(told[_sign(each)])
     if not stories:
         return []
     parts = [f"against {method}, {wording.listed(found)}" for method, found in stories.items()]
+    return [f"{study.against} with {tasks} tasks, where the number of robots changes the picture: {'; '.join(parts)}."]
+
+
+def _not_told_apart(tasks: int, pairs: Pairs) -> list[str]:
+    """Which methods do not differ significantly, of any two."""
+    if len(pairs) < 2:
+        return []
+    alike = [f"{first} and {second}" for first, second in not_told_apart(pairs)]
+    if not alike:
+        return [f"Any two of the methods differ significantly over the cases with {tasks} tasks."]
+    if len(alike) > MOST_NAMED:
+        return [
+            f"{len(alike)} of {len(pairs)} pairs of methods do not differ significantly over the cases with {tasks} "
+            "tasks: see the table of all pairs."
+        ]
     return [
-        f"By number of robots, {tasks} tasks, it is not the same everywhere: {study.against} completes significantly "
-        f"{'; '.join(parts)}."
+        f"Of any two methods, no significant difference over the cases with {tasks} tasks is between "
+        f"{wording.listed(alike)}; all other differences are significant."
     ]
 
 

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import pandas as pd
 
+from mrta_zoo.eval.machine import Session
 from mrta_zoo.eval.reproduce import paper, wording
 from mrta_zoo.eval.reproduce.figures import draw_seconds
 from mrta_zoo.eval.reproduce.parts import Picture, Section, Table
 from mrta_zoo.eval.reproduce.study import Group, Study
 
 
-def timing_section(study: Study) -> Section:
+def timing_section(study: Study, sessions: Sequence[Session]) -> Section:
     """Time for a whole mission and for a decision, by method and number of tasks."""
     times = times_of(study)
     sizes = study.sizes
@@ -38,7 +41,7 @@ def timing_section(study: Study) -> Section:
         caption += f" Last column: Table II of the paper ({paper.SOURCE}), measured on another machine."
     return Section(
         title="Planning time",
-        text=("Times are comparable within this report, and with others only as ratios.",),
+        text=("Times are comparable within this report, and with others only as ratios.", *busy_note(sessions)),
         pictures=(
             Picture(
                 name="planning_time",
@@ -49,6 +52,18 @@ def timing_section(study: Study) -> Section:
             ),
         ),
         tables=(Table(name="planning_time_table", caption=caption, shown=pd.DataFrame(shown), data=times),),
+    )
+
+
+def busy_note(sessions: Sequence[Session]) -> tuple[str, ...]:
+    """A warning if others were at work on the machine; nothing if not."""
+    loads = [f"{session.load:g}" for session in sessions if session.busy]
+    if not loads:
+        return ()
+    return (
+        f"Beware: the machine was busy with other work while this was measured (load {wording.listed(loads)} at the "
+        f"beginning, on {wording.counted(sessions[0].cores, 'core')}), so times are longer than they would be alone, "
+        "and not equally so for all methods. Measure again on a quiet machine before quoting them.",
     )
 
 
