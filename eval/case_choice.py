@@ -26,7 +26,7 @@ def read_all(cases: str) -> list[Case]:
         for case in read_cases(folder):
             if case.name in found:
                 raise ScenarioError(
-                    f"{folder}: a case is called {case.name!r}, as in another folder; expected different names"
+                    f"{folder} holds a case called {case.name!r}, as another folder does; expected different names"
                 )
             found[case.name] = case
     return list(found.values())
@@ -34,4 +34,4 @@ def read_all(cases: str) -> list[Case]:
 
 def shown_cases(cases: str) -> str:
     """The folders' own names: where they lie is nobody's business, and the digest says what is in them."""
-    return cases if cases == BUILTIN else ",".join(os.path.basename(os.path.abspath(each)) for each in cases.split(","))
+    return ",".join(os.path.basename(os.path.abspath(each)) for each in names(cases))
