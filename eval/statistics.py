@@ -60,7 +60,7 @@ class PairedTest:
     Attributes:
         difference: mean of first minus second, in their unit, with its interval.
         t_p: p-value of the paired t-test, two-sided.
-        wilcoxon_p: p-value of the Wilcoxon signed-rank test, two-sided, ties dropped.
+        wilcoxon_p: p-value of the Wilcoxon signed-rank test, two-sided, equal cases dropped.
         effect: Cohen's d_z, the mean difference in standard deviations of the differences.
         effect_low: lower end of its interval, from the noncentral t distribution.
         effect_high: upper end.
@@ -135,7 +135,8 @@ def paired_test(
         return PairedTest(estimate, None, None, None, None, None, *score, TOO_FEW)
     if not differences.any():
         return PairedTest(estimate, None, None, None, None, None, *score, ALL_EQUAL)
-    wilcoxon_p = float(stats.wilcoxon(differences).pvalue)
+    # It drops zeros itself, but of few pairs it then goes through all signs of all of them.
+    wilcoxon_p = float(stats.wilcoxon(differences[differences != 0]).pvalue)
     if np.ptp(differences) == 0:  # no spread, so no t
         return PairedTest(estimate, None, wilcoxon_p, None, None, None, *score, SAME_DIFFERENCE)
     test = stats.ttest_rel(one, other)
