@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -47,7 +48,7 @@ def test_names_at_the_end_of_lines_do_not_overlap() -> None:
     (axes,) = draw_curves(curves_of(rows, [(name, b) for name in methods for b in (1.0, 10.0)], seed=0)).axes
     heights = sorted(text.get_position()[1] for text in axes.texts)
     low, high = axes.get_ylim()
-    assert min(b - a for a, b in zip(heights, heights[1:], strict=False)) >= 0.04 * (high - low)
+    assert min(b - a for a, b in pairwise(heights)) >= 0.04 * (high - low)
 
 
 def test_every_so_many_cases_of_each_size() -> None:

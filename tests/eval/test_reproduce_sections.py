@@ -30,17 +30,16 @@ Completed = Mapping[str, Sequence[int]]
 
 
 def study(completed: Completed, robots: Sequence[int] = (2,) * 8, **more: object) -> Study:
-    """Cases with 100 tasks, in which each method completed so many; each took 2 ms a task completed."""
+    """Cases with 100 tasks, in which each method completed so many; each took 2 ms a task completed, at least 2 ms."""
     rows = [
-        Row(f"c{index}", method, 100, robots[index], value, value / 100, 0.0, 0.0, 0.0, 0.002 * value)
+        Row(f"c{index}", method, 100, robots[index], value, value / 100, 0.0, 0.0, 0.0, 0.002 * max(value, 1))
         for method, values in completed.items()
         for index, value in enumerate(values)
     ]
     methods = list(completed)
     cases = [f"c{index}" for index in range(len(robots))]
-    return Study(
-        frame=frame_of(rows, cases, methods), methods=tuple(methods), seed=0, **{"against": methods[0], **more}
-    )  # type: ignore[arg-type]
+    fields = {"against": methods[0], **more}
+    return Study(frame=frame_of(rows, cases, methods), methods=tuple(methods), seed=0, **fields)  # type: ignore[arg-type]
 
 
 def small_study(rows: Sequence[tuple[str, str, int, float | None]]) -> Study:
@@ -81,25 +80,25 @@ def test_verdicts() -> None:
 
 
 def test_the_summary_says_who_is_better_and_where_not() -> None:
-    capam = [40, 41, 42, 43, 44, 45, 80, 82, 84, 86, 88, 90]
-    other = [42, 43, 43, 45, 47, 47, 60, 63, 64, 65, 69, 70]
-    made = study({"capam": capam, "other": other, "same": capam}, [2] * 6 + [7] * 6)
+    capam = [40, 41, 42, 43, 44, 45, 46, 47, 80, 82, 84, 86, 88, 90, 92, 94]
+    other = [42, 43, 43, 45, 47, 47, 48, 49, 60, 63, 64, 65, 69, 70, 70, 75]
+    made = study({"capam": capam, "other": other, "same": capam}, [2] * 8 + [7] * 8)
     pairs = {100: compare_all(made, 100)}
     quiet = Session("now", "a processor", 2, 1, "Linux", "Python 3", 0.1)
     points = summary(made, compare(made), pairs, [quiet])
-    # capam 765 / 12 = 63.75, other 658 / 12 = 54.83; difference 107 / 12 = 8.9.
-    assert points[0].endswith("mean: capam 63.8 %, same 63.8 %, other 54.8 %.")
-    assert "significantly more, in percentage points, than other (by 8.9" in points[1]
+    # capam (348 + 696) / 16 = 65.25, other (364 + 536) / 16 = 56.25; difference 9.
+    assert points[0].endswith("mean: capam 65.2 %, same 65.2 %, other 56.2 %.")
+    assert "significantly more, in percentage points, than other (by 9.0" in points[1]
     assert "no significant difference from same (0.0, all equal)" in points[1]
     assert "capam and same; all other differences are significant" in points[2]
-    # With 2 robots 42 - 40 and so on: -(2 + 2 + 1 + 2 + 3 + 2) / 6 = -2.
+    # With 2 robots 42 - 40 and so on: -(2 + 2 + 1 + 2 + 3 + 2 + 2 + 2) / 8 = -2.
     assert "against other, significantly fewer with 2 robots (by 2.0)" in points[3]
     assert not any("Beware" in point for point in points)
     busy = Session("now", "a processor", 2, 1, "Linux", "Python 3", 3.5)
     assert "Beware: the machine was busy" in summary(made, compare(made), pairs, [busy])[-1]
     table = all_pairs_table(made, 100, pairs[100])
-    assert table.shown["other"].tolist() == ["+8.92", "–", "+8.92"]
-    assert table.shown.loc[1, "same"] == "−8.92"
+    assert table.shown["other"].tolist() == ["+9.00", "–", "+9.00"]
+    assert table.shown.loc[1, "same"] == "−9.00"
     assert table.bold == {(0, 2), (1, 1), (1, 3), (2, 2)}
 
 
@@ -112,7 +111,7 @@ def test_time_for_a_mission_and_for_a_decision() -> None:
     shown = timing_section(study({"capam": [40, 60], "none": [0, 0]}, [2, 2]), []).tables[0].shown
     assert shown.iloc[0].tolist() == ["capam", "100 ms", "2 ms", "85 ms"]
     assert shown.iloc[1].tolist()[2] == "–"
-    assert second["fastest"] == 0
+    assert second["fastest"] == 0.002
 
 
 def test_share_of_the_reference_where_there_is_one() -> None:
