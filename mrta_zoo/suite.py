@@ -46,13 +46,15 @@ def small_suite() -> list[Scenario]:
     Deadlines are so tight that the best plan seldom completes every task: else any method would be optimal. Named
     ``s{N}a{M}i0{i}``; even instances are uniform, odd ones TAPTC-like. A test holds its hash.
     """
-    tight = {"low": 0.0, "min_deadline": 15.0, "spread": 4.0, "normal_share": (0.5, 1.0)}
     scenarios = []
     for tasks in SMALL_TASKS:
         for robots in SMALL_ROBOTS:
-            size = {"tasks": (tasks, tasks), "robots": (robots, robots)}
-            uniform = UniformGenerator(**size, deadline=(20, 60 + 240 / robots), capacity=(1, 2))  # type: ignore[arg-type]
-            taptc = TaptcGenerator(**size, **tight, group="tight", latest=(60 + 150 / robots,) * 2)  # type: ignore[arg-type]
+            size, team, latest = (tasks, tasks), (robots, robots), 60 + 150 / robots
+            uniform = UniformGenerator(tasks=size, robots=team, deadline=(20, 60 + 240 / robots), capacity=(1, 2))
+            taptc = TaptcGenerator(
+                tasks=size, robots=team, group="tight", latest=(latest, latest), normal_share=(0.5, 1.0), low=0.0,
+                spread=4.0, min_deadline=15.0,
+            )  # fmt: skip
             for instance in range(SMALL_INSTANCES):
                 rng = np.random.default_rng((SMALL_SEED, tasks, robots, instance))
                 scenarios.append((uniform, taptc)[instance % 2](rng, f"s{tasks}a{robots}i0{instance}"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -120,7 +120,7 @@ def _measure(
     cases: Sequence[Case], solvers: dict[str, Solver], rows: RowsFile[BudgetRow], budget: float | None
 ) -> None:
     def record(case: Case, method: str, solved: Solved) -> BudgetRow:
-        return BudgetRow(*astuple(row_of(case, method, solved)), budget=budget)
+        return BudgetRow(**asdict(row_of(case, method, solved)), budget=budget)
 
     def known(row: BudgetRow) -> tuple[str, str] | None:
         return (row.case, row.method) if row.budget == budget else None

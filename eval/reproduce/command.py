@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import astuple, dataclass
+from dataclasses import asdict, astuple, dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -233,4 +233,4 @@ def _exact_solver(command: Reproduce, absent: dict[str, str]) -> dict[str, Solve
 
 def _optimality_row(case: Case, method: str, solved: Solved) -> OptimalityRow:
     bound = getattr(solved.plan, "bound", None)
-    return OptimalityRow(*astuple(row_of(case, method, solved)), bound=None if bound is None else float(bound))
+    return OptimalityRow(**asdict(row_of(case, method, solved)), bound=None if bound is None else float(bound))

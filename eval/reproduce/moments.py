@@ -27,7 +27,8 @@ def moments_section(study: Study) -> Section:
         if len(present) > 1
         else "Our column is one trained network."
     )
-    shown, data, bold = [], [], set()
+    shown: list[dict[str, str]] = []
+    data, bold = [], set()
     for tasks in study.sizes:
         for group in study.groups(tasks):
             if group.robots is None:
