@@ -54,6 +54,12 @@ def test_interval_of_a_mean_is_about_two_standard_errors() -> None:
     assert estimate_mean(values, seed=0) == found
 
 
+def test_four_values_are_too_few_for_an_interval() -> None:
+    found = estimate_mean([1, 2, 3, 6], seed=0)
+    assert (found.mean, found.low, found.high, found.note) == (3, None, None, TOO_FEW)
+    assert estimate_mean([1, 2, 3, 6, 8], seed=0).low is not None
+
+
 def test_groups_are_no_chance() -> None:
     # 10 % with 2 robots and 90 % with 7, in every case: the mean of 50 % is certain for this design.
     values = [10.0] * 10 + [90.0] * 10
