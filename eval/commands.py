@@ -9,10 +9,10 @@ from typing import Annotated
 
 from tyro.conf import Positional, arg
 
-from mrta_zoo.errors import ConfigError, ScenarioError
+from mrta_zoo.errors import ScenarioError
 from mrta_zoo.eval.console import progress_bar, results_console
 from mrta_zoo.eval.destination import check_destination, check_distinct
-from mrta_zoo.eval.flags import optional, parse
+from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.runner import Solved, evaluate, solve_and_score
 from mrta_zoo.eval.schedule import proven, schedule_table, totals
@@ -193,7 +193,7 @@ def eval_command(argv: Sequence[str]) -> None:
     command = parse(Eval, argv, "eval")
     if command.out:
         check_destination(command.out)
-    solvers = {method: command.planning.solver(method) for method in _names(command.methods)}
+    solvers = {method: command.planning.solver(method) for method in names(command.methods)}
     cases = builtin_cases() if command.cases == BUILTIN else read_cases(command.cases)
     with cpu_threads(command.planning.threads):
         rows = run_with_progress(cases, solvers)
@@ -221,16 +221,6 @@ def run_with_progress(cases: Sequence[Case], solvers: dict[str, Solver]) -> list
             rows.append(row)
             progress.update(bar, advance=1, description=row.method)
     return rows
-
-
-def _names(methods: str) -> list[str]:
-    names = [name.strip() for name in methods.split(",") if name.strip()]
-    if not names:
-        raise ConfigError(f"methods is {methods!r}; expected names separated by commas, such as capam,nearest")
-    for name in names:
-        if names.count(name) > 1:
-            raise ConfigError(f"method {name} is named twice; expected each once")
-    return names
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

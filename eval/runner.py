@@ -57,14 +57,23 @@ def evaluate(cases: Sequence[Case], solvers: Mapping[str, Solver]) -> Iterator[R
         MrtaError: if a method fails on a case; the message names both.
     """
     for method, solver in solvers.items():
-        if isinstance(solver, NeedsWarmUp) and cases:
-            solver.warm_up(cases[0].scenario)
-        for case in cases:
-            try:
-                solved = solve_and_score(solver, case.scenario)
-            except MrtaError as error:
-                raise type(error)(f"method {method} on case {case.name}: {error}") from error
+        for case, solved in solve_cases(cases, method, solver):
             yield row_of(case, method, solved)
+
+
+def solve_cases(cases: Sequence[Case], method: str, solver: Solver) -> Iterator[tuple[Case, Solved]]:
+    """One method on every case, warmed up before the first; each result as soon as it is known.
+
+    Raises:
+        MrtaError: if the method fails on a case; the message names both.
+    """
+    if isinstance(solver, NeedsWarmUp) and cases:
+        solver.warm_up(cases[0].scenario)
+    for case in cases:
+        try:
+            yield case, solve_and_score(solver, case.scenario)
+        except MrtaError as error:
+            raise type(error)(f"method {method} on case {case.name}: {error}") from error
 
 
 def row_of(case: Case, method: str, solved: Solved) -> Row:

@@ -45,6 +45,20 @@ def _train(argv: list[str]) -> None:
     train_command(argv)
 
 
+def _reproduce(argv: list[str]) -> None:
+    require("report", "the report")
+    from mrta_zoo.eval.reproduce.command import reproduce_command
+
+    reproduce_command(argv)
+
+
+def _converge(argv: list[str]) -> None:
+    require("report", "the figure")
+    from mrta_zoo.eval.converge.command import converge_command
+
+    converge_command(argv)
+
+
 def _demo(argv: list[str]) -> None:
     from mrta_zoo.eval.commands import demo_command
 
@@ -56,6 +70,8 @@ COMMANDS: dict[str, tuple[str, Command]] = {
     "eval": ("compare methods on a folder of cases, or on the built-in suite", _eval),
     "generate": ("draw random scenarios into a folder of cases", _generate),
     "train": ("train a policy by REINFORCE", _train),
+    "reproduce": ("run the experiments of the CapAM paper and write a report", _reproduce),
+    "converge": ("measure plan quality against planning time, and draw it", _converge),
     "demo": ("see it all at work, in a few minutes", _demo),
 }
 """Each command with what `mrta-zoo --help` says of it. To add one, give it an entry."""

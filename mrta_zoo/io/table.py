@@ -9,7 +9,7 @@ from mrta_zoo.errors import MrtaError
 from mrta_zoo.io.source import StrPath, read_text, shown
 
 
-def read_table(path: StrPath, error: type[MrtaError], strip: bool = True) -> list[tuple[str, list[str]]]:
+def read_table(path: StrPath, error: type[MrtaError]) -> list[tuple[str, list[str]]]:
     """Where each row of a CSV file stands, and its cells; at least the header.
 
     Blank lines are skipped; every other row has as many cells as the header.
@@ -17,7 +17,6 @@ def read_table(path: StrPath, error: type[MrtaError], strip: bool = True) -> lis
     Args:
         path: the file.
         error: what to raise.
-        strip: whether blanks around a cell are no part of it.
 
     Raises:
         error: if the file is missing or is not such a table.
@@ -34,7 +33,7 @@ def read_table(path: StrPath, error: type[MrtaError], strip: bool = True) -> lis
                     f"{where}: {shown(','.join(cells))} has {len(cells)} cells; "
                     f"expected {len(table[0][1])} as in the header"
                 )
-            table.append((where, [cell.strip() for cell in cells] if strip else cells))
+            table.append((where, [cell.strip() for cell in cells]))
     except csv.Error as problem:
         raise error(f"{path}, line {reader.line_num}: {problem}; expected cells separated by commas") from None
     if not table:

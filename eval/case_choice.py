@@ -1,0 +1,37 @@
+"""Which cases an experiment runs on."""
+
+from __future__ import annotations
+
+import os
+
+from mrta_zoo.errors import ScenarioError
+from mrta_zoo.eval.flags import names
+from mrta_zoo.io import Case, read_cases
+from mrta_zoo.suite import builtin_suite, double_suite
+
+BUILTIN = "builtin"
+
+
+def read_all(cases: str) -> list[Case]:
+    """The cases of one or more folders, or the built-in ones.
+
+    Raises:
+        ConfigError: if there is a folder twice, or none.
+        ScenarioError: if a folder cannot be read, or two hold cases of the same name.
+    """
+    if cases == BUILTIN:
+        return [Case(scenario.name, scenario) for scenario in (*builtin_suite(), *double_suite())]
+    found: dict[str, Case] = {}
+    for folder in names(cases, "folders", "folders", "taptc/n100,taptc/n200"):
+        for case in read_cases(folder):
+            if case.name in found:
+                raise ScenarioError(
+                    f"{folder} holds a case called {case.name!r}, as another folder does; expected different names"
+                )
+            found[case.name] = case
+    return list(found.values())
+
+
+def shown_cases(cases: str) -> str:
+    """The folders' own names: where they lie is nobody's business, and the digest says what is in them."""
+    return ",".join(os.path.basename(os.path.abspath(each)) for each in names(cases))

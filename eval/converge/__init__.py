@@ -1,0 +1,1 @@
+"""``mrta-zoo converge``: how good plans are after how much time."""

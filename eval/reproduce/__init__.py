@@ -1,0 +1,1 @@
+"""``mrta-zoo reproduce``: the paper's experiments, in one command, as a report."""

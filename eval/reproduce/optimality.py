@@ -1,0 +1,86 @@
+"""How far each method is from the optimum, on scenarios so small that an exact solver proves it."""
+
+from __future__ import annotations
+
+import pandas as pd
+
+from mrta_zoo.eval.reproduce import wording
+from mrta_zoo.eval.reproduce.figures import draw_gaps
+from mrta_zoo.eval.reproduce.parts import Picture, Section, Table
+from mrta_zoo.eval.reproduce.study import Study
+from mrta_zoo.eval.statistics import estimate_mean
+
+EXACT = "exact"
+TITLE = "Optimality gap on small scenarios"
+
+
+def optimality_section(study: Study) -> Section:
+    """Mean gap, share solved to optimality, and whether anyone ever beat the exact solver."""
+    if study.small is None:
+        reason = study.absent.get(EXACT, f"the method {EXACT} was not run")
+        return Section(title=TITLE, text=(f"Not measured, because {reason}.",))
+    frame = study.small
+    exact = frame[frame["method"] == EXACT].set_index("case")
+    proved = exact.index[exact["completed"] >= exact["bound"]]
+    optimum = frame["case"].map(exact["completed"])
+    impossible = frame[frame["completed"] > frame["case"].map(exact["bound"])]
+    judged = frame.assign(
+        optimum=optimum, gap=(100 * (optimum - frame["completed"]) / optimum.where(optimum > 0)).fillna(0.0)
+    )[frame["case"].isin(proved)]
+    text = [
+        f"{len(exact)} generated scenarios with {frame['tasks'].min()} to {frame['tasks'].max()} tasks and "
+        f"{frame['robots'].min()} to {frame['robots'].max()} robots, frozen seeds; {EXACT} proved its plan optimal in "
+        f"{len(proved)} of them" + (", and only those count here." if len(proved) < len(exact) else "."),
+        _beaten(impossible),
+    ]
+    if not len(proved):
+        return Section(title=TITLE, text=tuple(text))
+    gaps, shown, data = {}, [], []
+    for method in dict.fromkeys(judged["method"]):
+        rows = judged[judged["method"] == method]
+        gap = estimate_mean(rows["gap"].to_numpy(float), study.seed)
+        optimal = int((rows["completed"] == rows["optimum"]).sum())
+        shown.append(
+            {
+                "method": method,
+                "mean gap, %": wording.estimate(gap),
+                "optimal": f"{optimal} of {len(rows)} ({100 * optimal / len(rows):.0f} %)",
+                "largest gap, tasks": str(int((rows["optimum"] - rows["completed"]).max())),
+                "mean time": wording.seconds(rows["seconds"].mean()),
+            }
+        )  # fmt: skip
+        data.append(
+            {"method": method, "scenarios": len(rows), "mean_gap_percent": gap.mean, "low": gap.low, "high": gap.high,
+             "optimal": optimal, "mean_seconds": rows["seconds"].mean()}
+        )  # fmt: skip
+        if method != EXACT:
+            gaps[method] = gap
+    table = Table(
+        name="optimality_gap",
+        caption=f"Gap: tasks that the best plan completes and the method does not, in % of those the best plan "
+        f"completes; mean with its {wording.INTERVAL} in brackets (BCa bootstrap over scenarios); how often the method "
+        f"was optimal, and by how many tasks it was off at most. n = {len(proved)} scenarios. Trained methods have "
+        "learned on 100 tasks, so these are far from what they know.",
+        shown=pd.DataFrame(shown),
+        data=pd.DataFrame(data),
+    )
+    if not gaps:
+        return Section(title=TITLE, text=tuple(text), tables=(table,))
+    picture = Picture(
+        name="optimality_gap_figure",
+        caption=f"Mean optimality gap; bar: {wording.INTERVAL} (BCa bootstrap). n = {len(proved)} scenarios.",
+        figure=draw_gaps(study, gaps),
+        data=table.data,
+    )
+    return Section(title=TITLE, text=tuple(text), pictures=(picture,), tables=(table,))
+
+
+def _beaten(impossible: pd.DataFrame) -> str:
+    if impossible.empty:
+        return f"No method ever completed more tasks than {EXACT} proved possible, as it must be."
+    names = wording.listed([f"{line.method} on {line.case}" for line in impossible.head(5).itertuples()])
+    return (
+        f"ERROR: {wording.counted(len(impossible), 'plan')} completed more tasks than {EXACT} proved possible "
+        f"({names}): there is a mistake in the exact solver, the verifier or the rules, and this section must not "
+        "be used."
+    )

@@ -1,0 +1,60 @@
+"""A report as files: Markdown, self-contained HTML, pictures, and a CSV file behind each table and picture."""
+
+from __future__ import annotations
+
+import base64
+import re
+from pathlib import Path
+
+import jinja2
+from markupsafe import Markup, escape
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.eval.figure_style import save_figure
+from mrta_zoo.eval.reproduce.parts import Report
+from mrta_zoo.io.source import write_text
+
+MARKDOWN = re.compile(r"([\\`*_{}\[\]|~])")
+
+
+def write_report(report: Report, folder: Path) -> None:
+    """Write ``report.html``, ``report.md`` and what belongs to them, replacing what was there.
+
+    Raises:
+        ConfigError: if a file cannot be written.
+    """
+    try:
+        for section in report.sections:
+            for picture in section.pictures:
+                save_figure(picture.figure, folder / picture.name)
+                picture.data.to_csv(folder / f"{picture.name}.csv", index=False, lineterminator="\n")
+            for table in section.tables:
+                table.data.to_csv(folder / f"{table.name}.csv", index=False, lineterminator="\n")
+        for suffix in ("html", "md"):
+            write_text(render(report, suffix, folder), folder / f"report.{suffix}", ConfigError)
+    except OSError as error:
+        raise ConfigError(f"{folder} cannot be written: {(error.strerror or str(error)).lower()}") from None
+
+
+def render(report: Report, suffix: str, folder: Path) -> str:
+    """The report as text.
+
+    Args:
+        report: what to say.
+        suffix: "html" or "md".
+        folder: where its pictures lie, to be embedded in HTML.
+    """
+
+    def embedded(name: str) -> str:
+        return "data:image/png;base64," + base64.b64encode((folder / f"{name}.png").read_bytes()).decode()
+
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("mrta_zoo.eval.reproduce"), autoescape=True, undefined=jinja2.StrictUndefined
+    )
+    environment.filters |= {"embedded": embedded, "md": markdown}
+    return environment.get_template(f"report.{suffix}.j2").render(report=report)
+
+
+def markdown(text: str) -> Markup:
+    """Text that Markdown shows as it is: no tags, no emphasis, no cells of a table, one line."""
+    return Markup(MARKDOWN.sub(r"\\\1", str(escape(" ".join(str(text).split())))))

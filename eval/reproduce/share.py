@@ -1,0 +1,76 @@
+"""How close each method comes to the best known plan."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from mrta_zoo.eval.reproduce import wording
+from mrta_zoo.eval.reproduce.completion import case_counts, estimate_table
+from mrta_zoo.eval.reproduce.figures import draw_intervals
+from mrta_zoo.eval.reproduce.parts import Picture, Section
+from mrta_zoo.eval.reproduce.study import Study
+
+
+def share_section(study: Study) -> Section:
+    """Tasks completed as % of what the best known plan completes."""
+    title = "Share of the best known plan"
+    frame = study.frame
+    best_here = frame.groupby("case")["completed"].transform("max")
+    reference = frame["case"].map(dict(study.best_known))
+    best = reference.fillna(best_here).astype(float)
+    known = study.frame["case"].isin(frame.loc[best > 0, "case"])
+    with_reference = frame.loc[reference.notna(), "case"].nunique()
+    cases = frame["case"].nunique()
+    beaten = frame.loc[best_here > best, "case"].nunique()
+    text = [_basis(with_reference, cases)]
+    if beaten:
+        text.append(
+            f"In {wording.counted(beaten, 'case')} a method run here completed more tasks than the reference table "
+            "knows of; shares above 100 % are such cases."
+        )
+    if not known.all():
+        text.append(
+            f"{wording.counted(cases - frame.loc[known, 'case'].nunique(), 'case')} in which nobody completed any task "
+            "are left out."
+        )
+    shares = replace(study, frame=frame.assign(share=100 * frame["completed"] / best)[known])
+    if shares.frame.empty:
+        return Section(title=title, text=tuple(text))
+    pictures, tables = [], []
+    for tasks in shares.sizes:
+        caption = (
+            f"Tasks completed, mean % of the tasks of the best known plan, {tasks} tasks, with its {wording.INTERVAL} "
+            f"(BCa bootstrap over cases, within each number of robots). {case_counts(shares, tasks)}"
+        )
+        table = estimate_table(
+            shares,
+            tasks,
+            "share",
+            f"share_of_best_{tasks}",
+            f"{caption} Bold: the highest, be the lead significant or not.",
+        )
+        tables.append(table)
+        pictures.append(
+            Picture(
+                name=f"share_of_best_figure_{tasks}",
+                caption=f"{caption} Mark: mean; bar: interval; arrow: below the axis, with the mean.",
+                figure=draw_intervals(shares, tasks, "share", "mean % of the tasks that the best known plan completes"),
+                data=table.data,
+            )
+        )
+    return Section(title=title, text=tuple(text), pictures=tuple(pictures), tables=tuple(tables))
+
+
+def _basis(with_reference: int, cases: int) -> str:
+    if with_reference == cases:
+        return "Best known is the best in the reference.csv that comes with the cases, for every case."
+    run = (
+        "the best plan that any method of this report found. That is no bound: with other methods run, shares would "
+        "differ, and the best of those run gets close to 100 % by itself"
+    )
+    if not with_reference:
+        return f"The cases come without a reference.csv, so best known is {run}."
+    return (
+        f"Best known is the best in reference.csv for {wording.counted(with_reference, 'case')}, and for the other "
+        f"{cases - with_reference} {run}."
+    )

@@ -1,0 +1,50 @@
+"""Numbers and lists as text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from mrta_zoo.eval.statistics import LEVEL, TOO_FEW, Estimate
+
+INTERVAL = f"{100 * LEVEL:.0f} % interval"
+DASH = "–"
+
+
+def estimate(value: Estimate, digits: int = 1, signed: bool = False) -> str:
+    """A mean with its interval in brackets, if there is one."""
+    mean = number(value.mean, digits, signed)
+    if value.low is None or value.high is None:
+        return f"{mean} ({TOO_FEW})"
+    return f"{mean} [{number(value.low, digits, signed)}, {number(value.high, digits, signed)}]"
+
+
+def number(value: float, digits: int = 1, signed: bool = False) -> str:
+    """A number with a true minus sign; zero has no sign."""
+    text = f"{value:+.{digits}f}" if signed else f"{value:.{digits}f}"
+    if not text.strip("+-0."):
+        text = text.lstrip("+-")
+    return text.replace("-", "−")
+
+
+def p_value(p: float | None) -> str:
+    """A p-value to two significant digits, down to 0.0001."""
+    if p is None:
+        return DASH
+    return "< 0.0001" if p < 1e-4 else f"{p:.2g}" if p < 0.995 else "1"
+
+
+def seconds(value: float) -> str:
+    """A time in the unit that suits it."""
+    if value < 0.001:
+        return f"{1e6 * value:.3g} µs"
+    return f"{1000 * value:.3g} ms" if value < 1 else f"{value:.3g} s"
+
+
+def listed(items: Sequence[str]) -> str:
+    """a, b and c."""
+    return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} and {items[-1]}"
+
+
+def counted(count: int, singular: str, plural: str = "") -> str:
+    """1 case, 2 cases."""
+    return f"{count} {singular if count == 1 else plural or singular + 's'}"

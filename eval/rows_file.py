@@ -1,0 +1,88 @@
+"""Rows in a CSV file that grows as they become known, so that an interruption loses at most the one in the making."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+from dataclasses import astuple, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+import msgspec
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.io.source import read_text, write_text
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+RowType = TypeVar("RowType", bound="DataclassInstance")
+
+
+class RowsFile(Generic[RowType]):
+    """A CSV file with a header and a line for each row; absent values are empty cells.
+
+    Args:
+        path: read if it exists, made with the first row if not. A last line without line end, which an interruption
+            has left, is dropped.
+        of: the dataclass of the rows, of text, numbers, and numbers that may be None by default.
+
+    Raises:
+        ConfigError: if the file is malformed.
+    """
+
+    def __init__(self, path: Path, of: type[RowType]) -> None:
+        self.path, self._of = path, of
+        self._columns = [field.name for field in fields(of)]
+        self._optional = {field.name for field in fields(of) if field.default is None}
+        self.rows: list[RowType] = []
+        self._whole_header = False
+        if os.path.lexists(path):
+            self._read()
+
+    def append(self, row: RowType) -> None:
+        """Add a row, in memory and on disk.
+
+        Raises:
+            ConfigError: if the file cannot be written.
+        """
+        stream = io.StringIO()
+        writer = csv.writer(stream, lineterminator="\n")
+        if not self._whole_header:
+            writer.writerow(self._columns)
+        writer.writerow(astuple(row))
+        try:
+            with self.path.open("a", encoding="utf-8", newline="") as file:
+                file.write(stream.getvalue())
+        except OSError as error:
+            raise ConfigError(f"{self.path} cannot be written: {(error.strerror or str(error)).lower()}") from None
+        self._whole_header = True
+        self.rows.append(row)
+
+    def _read(self) -> None:
+        text = read_text(self.path, ConfigError) if self.path.stat().st_size else ""
+        whole = text[: text.rfind("\n") + 1]
+        if whole != text:
+            write_text(whole, self.path, ConfigError)
+        if not whole:
+            return
+        header, *lines = csv.reader(io.StringIO(whole))
+        if header != self._columns:
+            raise ConfigError(f"{self.path}, line 1: the columns are {header}; expected {self._columns}")
+        self._whole_header = True
+        for number, cells in enumerate(lines, start=2):
+            self.rows.append(self._row(cells, f"{self.path}, line {number}"))
+
+    def _row(self, cells: list[str], where: str) -> RowType:
+        if len(cells) != len(self._columns):
+            raise ConfigError(f"{where}: {len(cells)} cells; expected {len(self._columns)}")
+        given: dict[str, Any] = {
+            name: cell
+            for name, cell in zip(self._columns, cells, strict=True)
+            if cell != "" or name not in self._optional
+        }
+        try:
+            return msgspec.convert(given, self._of, strict=False)
+        except msgspec.ValidationError as error:
+            raise ConfigError(f"{where}: {error}") from None

@@ -1,0 +1,175 @@
+"""Experiments that can be interrupted: rows on disk, and what a folder must not be mixed with."""
+
+from __future__ import annotations
+
+from dataclasses import astuple, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mrta_zoo.errors import ConfigError, ScenarioError
+from mrta_zoo.eval.case_choice import read_all, shown_cases
+from mrta_zoo.eval.converge.curves import BudgetRow
+from mrta_zoo.eval.experiment import (
+    MANIFEST,
+    Manifest,
+    digest_of_cases,
+    digest_of_weights,
+    make_manifest,
+    measure,
+    open_experiment,
+)
+from mrta_zoo.eval.rows import Row
+from mrta_zoo.eval.rows_file import RowsFile
+from mrta_zoo.eval.runner import row_of
+from mrta_zoo.generators import UniformGenerator
+from mrta_zoo.io import Case, write_scenario
+from mrta_zoo.plan import Plan
+from mrta_zoo.policies.registry import make_solver
+from mrta_zoo.scenario import Scenario
+
+CASES = [
+    Case(name, UniformGenerator(tasks=(6, 6), robots=(2, 2))(np.random.default_rng(index), name))
+    for index, name in enumerate(("a", "b,c", 'd"e'))
+]
+ROW = Row("a,b", 'quo"te', 100, 2, 30, 0.3, 1 / 3, 1e-7, 12.5, 0.25)
+MANIFEST_NOW = Manifest(command="reproduce", settings={"cases": "x", "budget": None}, cases="1", weights={"capam": "2"})
+
+
+class InterruptedHereError(Exception):
+    pass
+
+
+class Breaks:
+    """Plans like `nearest` until it has planned so many missions."""
+
+    def __init__(self, after: int) -> None:
+        self.left, self.inner, self.solved = after, make_solver("nearest"), []  # type: ignore[var-annotated]
+
+    def solve(self, scenario: Scenario) -> Plan:
+        if not self.left:
+            raise InterruptedHereError
+        self.left -= 1
+        self.solved.append(scenario.name)
+        return self.inner.solve(scenario)
+
+
+def known(row: Row) -> tuple[str, str]:
+    return row.case, row.method
+
+
+def test_rows_read_back_as_they_were(tmp_path: Path) -> None:
+    file = RowsFile(tmp_path / "rows.csv", BudgetRow)
+    rows = [BudgetRow(*astuple(ROW), budget=0.3), BudgetRow(*astuple(ROW))]
+    for row in rows:
+        file.append(row)
+        assert RowsFile(tmp_path / "rows.csv", BudgetRow).rows == file.rows
+    assert file.rows == rows
+
+
+@pytest.mark.parametrize("cut", [1, 5, 30])
+def test_an_unfinished_line_is_dropped(tmp_path: Path, cut: int) -> None:
+    path = tmp_path / "rows.csv"
+    for case in ("a", "b"):
+        RowsFile(path, Row).append(replace(ROW, case=case))
+    whole = path.read_text()
+    path.write_text(whole[:-cut])
+    file = RowsFile(path, Row)
+    assert [row.case for row in file.rows] == ["a"]
+    file.append(replace(ROW, case="b"))
+    assert path.read_text() == whole
+
+
+def test_even_an_unfinished_header_is_mended(tmp_path: Path) -> None:
+    path = tmp_path / "rows.csv"
+    path.write_text("case,meth")
+    RowsFile(path, Row).append(ROW)
+    assert RowsFile(path, Row).rows == [ROW]
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [("a,b\n", "line 1: the columns are"), (None, "line 2: 2 cells; expected 10"), ("x", "Expected `int`")],
+)
+def test_malformed_rows_are_refused(tmp_path: Path, line: str | None, sentence: str) -> None:
+    path = tmp_path / "rows.csv"
+    RowsFile(path, Row).append(ROW)
+    header, row = path.read_text().splitlines()
+    path.write_text(
+        {None: f"{header}\na,b\n", "x": f"{header}\n{row.replace(',100,', ',many,')}\n"}.get(line, line or "")
+    )
+    with pytest.raises(ConfigError, match=sentence):
+        RowsFile(path, Row)
+
+
+def test_an_interruption_costs_one_case(tmp_path: Path) -> None:
+    path = tmp_path / "rows.csv"
+    first = Breaks(after=2)
+    with pytest.raises(InterruptedHereError):
+        measure(CASES, {"m": first}, RowsFile(path, Row), row_of, known)
+    assert [row.case for row in RowsFile(path, Row).rows] == ["a", "b,c"]
+    second = Breaks(after=9)
+    measure(CASES, {"m": second}, RowsFile(path, Row), row_of, known)
+    assert second.solved == ['d"e']
+    whole = RowsFile(tmp_path / "whole.csv", Row)
+    measure(CASES, {"m": make_solver("nearest")}, whole, row_of, known)
+    assert [replace(row, seconds=0) for row in RowsFile(path, Row).rows] == [
+        replace(row, seconds=0) for row in whole.rows
+    ]
+
+
+def test_a_folder_is_opened_again_by_the_same_command_only(tmp_path: Path) -> None:
+    folder = tmp_path / "new" / "out"
+    open_experiment(folder, MANIFEST_NOW)
+    (folder / "rows.csv").write_text("")
+    open_experiment(folder, MANIFEST_NOW)
+    for other, sentence in (
+        (replace(MANIFEST_NOW, command="converge"), "the command was reproduce, now it is converge"),
+        (replace(MANIFEST_NOW, version="9"), "made by version .*, this is 9"),
+        (replace(MANIFEST_NOW, settings={"cases": "x", "budget": 2.0}), "budget was not given, now it is 2.0"),
+        (replace(MANIFEST_NOW, settings={"cases": "y", "budget": None}), "cases was x, now it is y"),
+        (replace(MANIFEST_NOW, cases="9"), "the cases have changed"),
+        (replace(MANIFEST_NOW, weights={"capam": "9"}), "the weights of capam have changed"),
+    ):
+        with pytest.raises(ConfigError, match=f"out holds results of another run: .*{sentence}.*; expected the same"):
+            open_experiment(folder, other)
+
+
+def test_foreign_folders_are_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ConfigError, match="file is a file"):
+        open_experiment(tmp_path / "file", MANIFEST_NOW)
+    with pytest.raises(ConfigError, match=r"is not empty and holds no manifest\.json"):
+        open_experiment(tmp_path, MANIFEST_NOW)
+    (tmp_path / MANIFEST).write_text('{"mine": true}')
+    with pytest.raises(ConfigError, match="expected what this command has written there"):
+        open_experiment(tmp_path, MANIFEST_NOW)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", MANIFEST]
+
+
+def test_digests_tell_cases_and_weights_apart(tmp_path: Path) -> None:
+    digest = digest_of_cases(CASES)
+    assert digest == digest_of_cases(list(CASES))
+    moved = replace(CASES[0], scenario=replace(CASES[0].scenario, deadline=CASES[0].scenario.deadline + 1e-9))
+    for other in (CASES[:2], CASES[::-1], [moved, *CASES[1:]], [replace(CASES[0], best_known=3), *CASES[1:]]):
+        assert digest_of_cases(other) != digest
+    assert digest_of_weights("capam") != digest_of_weights("capam-plus")
+    with pytest.raises(ConfigError, match="no such file"):
+        digest_of_weights(str(tmp_path))
+    assert list(make_manifest("eval", {}, CASES, ["nearest", "capam"]).weights) == ["capam"]
+
+
+def test_cases_of_several_folders(tmp_path: Path) -> None:
+    for folder in ("one", "two"):
+        (tmp_path / folder).mkdir()
+        write_scenario(CASES[0].scenario, tmp_path / folder / f"{folder}.csv")
+    found = read_all(f"{tmp_path}/one, {tmp_path}/two")
+    assert [case.name for case in found] == ["one", "two"]
+    assert shown_cases(f"{tmp_path}/one/,{tmp_path}/two") == "one,two"
+    assert [len(read_all("builtin")), shown_cases("builtin")] == [192, "builtin"]
+    (tmp_path / "two" / "one.csv").write_bytes((tmp_path / "one" / "one.csv").read_bytes())
+    with pytest.raises(ScenarioError, match=r"two holds a case called 'one', as another folder does"):
+        read_all(f"{tmp_path}/one,{tmp_path}/two")
+    with pytest.raises(ConfigError, match="is named twice"):
+        read_all(f"{tmp_path}/one,{tmp_path}/one")
