@@ -36,7 +36,7 @@ def study(completed: Completed, robots: Sequence[int] = (2,) * 8, **more: object
     return Study(frame=frame_of(rows, cases, methods), methods=tuple(methods), seed=0, **fields)  # type: ignore[arg-type]
 
 
-def small_study(rows: Sequence[tuple[str, str, int, float | None]]) -> Study:
+def small_study(rows: Sequence[tuple[str, str, int, int | None]]) -> Study:
     """Small scenarios of 5 tasks: case, method, tasks completed, and bound."""
     made = [
         OptimalityRow(case, method, 5, 1, done, done / 5, 0, 0, 0, 0.1, bound) for case, method, done, bound in rows
@@ -135,7 +135,7 @@ def test_the_papers_table_stands_beside_ours() -> None:
 
 
 def test_the_gap_counts_where_the_optimum_is_proved() -> None:
-    exact = [("s0", 4, 4.0), ("s1", 5, 5.3), ("s2", 4, 4.0000001), ("s3", 3, 3.0), ("s4", 2, 2.0), ("s5", 3, 5.0)]
+    exact = [("s0", 4, 4), ("s1", 5, 5), ("s2", 4, 4), ("s3", 3, 3), ("s4", 2, 2), ("s5", 3, 5)]
     nearest = [("s0", 4), ("s1", 4), ("s2", 3), ("s3", 3), ("s4", 1), ("s5", 3)]
     section = optimality_section(
         small_study([(c, "exact", d, b) for c, d, b in exact] + [(c, "nearest", d, None) for c, d in nearest])
