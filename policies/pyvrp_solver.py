@@ -15,8 +15,8 @@ import numpy as np
 from mrta_zoo.bounds import check_seed
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
+from mrta_zoo.policies.exact.task_sets import IntArray, within_reach
 from mrta_zoo.policies.on_time import Routes, on_time
-from mrta_zoo.policies.task_sets import IntArray, within_reach
 from mrta_zoo.rules import travel_time
 from mrta_zoo.scenario import Scenario
 

@@ -15,8 +15,8 @@ from mrta_zoo.extras import require
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.aec_loop import run_in_environment
 from mrta_zoo.policies.big_mrta import BigMrtaSolver
-from mrta_zoo.policies.exact import BUDGET as EXACT_BUDGET
-from mrta_zoo.policies.exact import ExactSolver
+from mrta_zoo.policies.exact.solver import BUDGET as EXACT_BUDGET
+from mrta_zoo.policies.exact.solver import ExactSolver
 from mrta_zoo.policies.heuristics import EarliestDeadlinePolicy, NearestPolicy, RandomPolicy
 from mrta_zoo.policies.options import Decode, SolverOptions
 from mrta_zoo.policies.pretrained import pretrained_names

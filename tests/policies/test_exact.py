@@ -17,10 +17,10 @@ pytest.importorskip("numba")
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator, UniformGenerator
 from mrta_zoo.plan import Plan
-from mrta_zoo.policies.exact import ExactSolver
+from mrta_zoo.policies.exact.relaxation import most_completable
+from mrta_zoo.policies.exact.set_choice import Team, choose_sets
+from mrta_zoo.policies.exact.solver import ExactSolver
 from mrta_zoo.policies.registry import METHODS, make_solver, method_names
-from mrta_zoo.policies.relaxation import most_completable
-from mrta_zoo.policies.set_choice import Team, choose_sets
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
 

@@ -16,7 +16,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator, UniformGenerator
 from mrta_zoo.io import read_cases
 from mrta_zoo.plan import Plan
-from mrta_zoo.policies.exact import ExactSolver
+from mrta_zoo.policies.exact.solver import ExactSolver
 from mrta_zoo.policies.pyvrp_solver import RESOLUTION, PyVrpSolver, _model
 from mrta_zoo.policies.registry import make_solver
 from mrta_zoo.scenario import Scenario

@@ -11,7 +11,7 @@ import pytest
 from strategies import seeded_scenarios
 
 from mrta_zoo.plan import Plan
-from mrta_zoo.policies.task_sets import TaskSets, task_sets
+from mrta_zoo.policies.exact.task_sets import TaskSets, task_sets
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from mrta_zoo.policies.task_sets import ROUNDING, first_finish
+from mrta_zoo.policies.exact.task_sets import ROUNDING, first_finish
 from mrta_zoo.rules import travel_time
 from mrta_zoo.scenario import FloatArray, Scenario
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mrta_zoo.policies.task_sets import IntArray
+from mrta_zoo.policies.exact.task_sets import IntArray
 
 
 @dataclass(frozen=True, slots=True)

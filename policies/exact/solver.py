@@ -12,11 +12,11 @@ import time
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.aec_loop import run_in_environment
+from mrta_zoo.policies.exact.relaxation import most_completable
+from mrta_zoo.policies.exact.set_choice import Team, choose_sets
+from mrta_zoo.policies.exact.task_sets import task_sets
 from mrta_zoo.policies.heuristics import EarliestDeadlinePolicy, NearestPolicy
 from mrta_zoo.policies.on_time import Routes, on_time
-from mrta_zoo.policies.relaxation import most_completable
-from mrta_zoo.policies.set_choice import Team, choose_sets
-from mrta_zoo.policies.task_sets import task_sets
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
 
