@@ -24,13 +24,16 @@ from mrta_zoo.io.taptc import find_agent_file
 from mrta_zoo.policies.options import Decode
 from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.protocol import Solver
-from mrta_zoo.policies.registry import METHODS, make_solver, method_names
+from mrta_zoo.policies.registry import METHODS, POLISH, make_solver, method_names
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.suite import builtin_suite
 
 BUILTIN = "builtin"
 
-TRAINED_HELP = "a policy's .safetensors file, or the folder of a training run"
+TRAINED_HELP = (
+    f"a policy's .safetensors file, or the folder of a training run. NAME{POLISH} has a method's plan improved by "
+    "local search"
+)
 METHOD_HELP = (
     "; ".join(f"{name}: {method.summary}" for name, method in METHODS.items())
     + f"; {', '.join(pretrained_names())}: trained, ship with the package; {TRAINED_HELP}."

@@ -22,7 +22,7 @@ from mrta_zoo.io import Case
 from mrta_zoo.io.source import write_text
 from mrta_zoo.policies.pretrained import pretrained_names, pretrained_path
 from mrta_zoo.policies.protocol import Solver
-from mrta_zoo.policies.registry import METHODS
+from mrta_zoo.policies.registry import METHODS, POLISH
 
 MANIFEST = "manifest.json"
 Settings = Mapping[str, Any]
@@ -52,7 +52,8 @@ class Manifest:
 
 def make_manifest(command: str, settings: Settings, cases: Iterable[Case], methods: Iterable[str]) -> Manifest:
     """The manifest of an experiment that is about to begin or to be resumed."""
-    weights = {method: digest_of_weights(method) for method in methods if method not in METHODS}
+    bases = dict.fromkeys(method.removesuffix(POLISH) for method in methods)
+    weights = {method: digest_of_weights(method) for method in bases if method not in METHODS}
     return Manifest(command=command, settings=dict(settings), cases=digest_of_cases(cases), weights=weights)
 
 

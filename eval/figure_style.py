@@ -29,6 +29,7 @@ STYLES = {
     "capam-p2": ("#56b4e9", ">"),
     "capam": ("#0072b2", "o"),
     "capam-plus": ("#009e73", "s"),
+    "capam-plus+polish": ("#004d3a", "p"),
 }
 """Colour and marker by method. Okabe and Ito's colours, which colour-blind people can tell apart, greys for the simple
 heuristics, and shades of one blue for the variants of one network; figures name their methods beside the marks, too."""

@@ -5,24 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
 
 from mrta_zoo.errors import MrtaError
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.io import Case
 from mrta_zoo.plan import Plan
-from mrta_zoo.policies.protocol import Solver
+from mrta_zoo.policies.protocol import NeedsWarmUp, Solver
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import Score, verify
-
-
-@runtime_checkable
-class NeedsWarmUp(Protocol):
-    """A solver whose first plan takes longer than the others for reasons of its machinery."""
-
-    def warm_up(self, scenario: Scenario) -> None:
-        """Do whatever happens only once."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,3 +25,12 @@ class Solver(Protocol):
     def solve(self, scenario: Scenario) -> Plan:
         """A plan for `scenario`."""
         ...
+
+
+@runtime_checkable
+class NeedsWarmUp(Protocol):
+    """A solver whose first plan takes longer than the others for reasons of its machinery."""
+
+    def warm_up(self, scenario: Scenario) -> None:
+        """Do whatever happens only once."""
+        ...

@@ -136,6 +136,10 @@ METHODS: dict[str, Method] = {
 """Methods that need no training. The policies that ship with the package are methods, too: see `method_names`."""
 
 
+POLISH = "+polish"
+"""What is added to a method's name to have its plan improved by local search."""
+
+
 def method_names() -> list[str]:
     """What `make_solver` knows by name: `METHODS`, then the trained policies that ship with the package."""
     return [*METHODS, *pretrained_names()]
@@ -153,7 +157,8 @@ def make_solver(
     """The method of that name, ready to plan.
 
     Args:
-        name: one of `method_names()`, a trained policy's ``.safetensors`` file, or the folder of a training run.
+        name: one of `method_names()`, a trained policy's ``.safetensors`` file, or the folder of a training run; with
+            `POLISH` at its end, local search improves the plan, and by default the budget is left to it.
         seed: see `SolverOptions`, as for all that follow.
         decode: how learned methods choose.
         samples: missions that sampling draws in one go.
@@ -164,7 +169,22 @@ def make_solver(
         ConfigError: if there is no such method, or an option is out of range.
         MissingExtraError: if the method needs what is not installed.
     """
-    options = SolverOptions(seed=seed, decode=decode, samples=samples, budget=budget, mask_rule=mask_rule)
+    if name.endswith(POLISH):
+        return _polished(
+            name.removesuffix(POLISH),
+            SolverOptions(seed=seed, decode=decode or "greedy", samples=samples, budget=budget, mask_rule=mask_rule),
+        )
+    return _make(name, SolverOptions(seed=seed, decode=decode, samples=samples, budget=budget, mask_rule=mask_rule))
+
+
+def _polished(name: str, options: SolverOptions) -> Solver:
+    require("solvers", f"method {name + POLISH!r}")
+    from mrta_zoo.policies.local_search.polish import PolishedSolver
+
+    return PolishedSolver(_make(name, options), options.seed, options.budget)
+
+
+def _make(name: str, options: SolverOptions) -> Solver:
     if name in METHODS:
         method = METHODS[name]
         if method.extra is not None:
@@ -174,7 +194,7 @@ def make_solver(
     if name not in names and not name.endswith(".safetensors") and not os.path.isdir(name):
         raise ConfigError(
             f"there is no method {name!r}; expected one of {', '.join(names)}, a .safetensors file, or the folder of a "
-            "training run"
+            f"training run, {POLISH} added if wanted"
         )
     return LearnedSolver(load_learned(name), options)
 

@@ -25,9 +25,9 @@ from mrta_zoo.eval.runner import Solved, row_of
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import Case
 from mrta_zoo.policies.protocol import Solver
-from mrta_zoo.policies.registry import make_solver, method_names
+from mrta_zoo.policies.registry import POLISH, make_solver, method_names
 
-USUAL = ("ils", "eils", "pyvrp", "capam-plus")
+USUAL = ("ils", "eils", "pyvrp", "capam-plus", f"capam-plus{POLISH}")
 USUAL_POINTS = ("nearest", "capam")
 
 
@@ -48,8 +48,8 @@ class Converge:
     out: Annotated[Path, arg(metavar="DIR")]
     """Folder for rows, curves and figure; new, empty, or of the same command."""
     methods: Annotated[str | None, optional("METHOD,METHOD,…")] = None
-    """Methods that search, trained ones by sampling. By default ils, eils, pyvrp and capam-plus, as far as they are
-    there."""
+    """Methods that search, trained ones by sampling. By default ils, eils, pyvrp, capam-plus, and its greedy plan
+    polished by local search, as far as they are there."""
     points: Annotated[str | None, optional("METHOD,METHOD,…")] = None
     """Methods without a budget, trained ones greedy; nearest and capam by default."""
     budgets: Annotated[str, arg(metavar="SECONDS,SECONDS,…")] = "0.1,0.3,1,3,10"
@@ -74,11 +74,10 @@ def converge_command(argv: Sequence[str]) -> None:
     points = _usual(USUAL_POINTS) if command.points is None else names(command.points)
     cases = every_of_each_size(read_all(command.cases), command.every)
     plan: list[tuple[float | None, dict[str, Solver]]] = [
-        (None, {name: make_solver(name, seed=command.seed, decode="greedy") for name in points})
+        (None, {name: make_solver(name, seed=command.seed) for name in points})
     ]
     plan += [
-        (budget, {name: make_solver(name, seed=command.seed, decode="sample", budget=budget) for name in methods})
-        for budget in budgets
+        (budget, {name: make_solver(name, seed=command.seed, budget=budget) for name in methods}) for budget in budgets
     ]
     settings = {"cases": shown_cases(command.cases), "methods": methods, "points": points, "budgets": budgets,
                 "every": command.every, "seed": command.seed, "threads": command.threads}  # fmt: skip
@@ -168,7 +167,7 @@ def _usual(wanted: Sequence[str]) -> list[str]:
     """Those methods that this version has and this installation can run."""
     found = []
     for name in wanted:
-        if name in method_names():
+        if name.removesuffix(POLISH) in method_names():
             try:
                 make_solver(name)
             except MissingExtraError:

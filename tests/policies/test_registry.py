@@ -137,3 +137,32 @@ def test_seeds_have_a_greatest() -> None:
         ConfigError, match="seed is 9223372036854775808; expected a whole number from 0 to 9223372036854"
     ):
         SolverOptions(seed=2**63)
+
+
+def test_any_method_can_be_polished() -> None:
+    pytest.importorskip("numba")
+    for scenario in seeded_scenarios(6, 10):
+        plan, polished = (make_solver(name).solve(scenario) for name in ("edf", "edf+polish"))
+        assert polished.method == "edf+polish"
+        assert verify(scenario, polished).completed >= verify(scenario, plan).completed
+    with pytest.raises(ConfigError, match="no method 'neerest'"):
+        make_solver("neerest+polish")
+
+
+def test_the_search_has_what_the_method_leaves_of_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
+    polish = pytest.importorskip("mrta_zoo.policies.local_search.polish")
+    scenario = seeded_scenarios(7, 1)[0]
+    budgets = []
+
+    class Spy(polish.EilsSolver):  # type: ignore[misc, name-defined]
+        def __init__(self, seed: int = 0, budget: float | None = None) -> None:
+            super().__init__(seed, 0.01)
+            budgets.append(budget)
+
+    monkeypatch.setattr(polish, "EilsSolver", Spy)
+    for seconds in (0.5, 3.0):  # that the method takes
+        clock = iter([10.0, 10.0 + seconds])
+        solver = make_solver("nearest+polish", budget=2.0)
+        monkeypatch.setattr(polish.time, "perf_counter", lambda clock=clock: next(clock, 99.0))
+        solver.solve(scenario)
+    assert budgets == [None, 1.5, None, polish.LEAST_BUDGET]
