@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.eval.flags import names
@@ -24,11 +25,14 @@ def read_all(cases: str) -> list[Case]:
     found: dict[str, Case] = {}
     for folder in names(cases, "folders", "folders", "taptc/n100,taptc/n200"):
         for case in read_cases(folder):
-            if case.name in found:
+            name = case.name
+            if name in found:  # as in folders that were generated
+                name = f"{os.path.basename(os.path.abspath(folder))}/{name}"
+            if name in found:
                 raise ScenarioError(
-                    f"{folder} holds a case called {case.name!r}, as another folder does; expected different names"
+                    f"{folder} holds a case called {name!r}, as another folder does; expected different names"
                 )
-            found[case.name] = case
+            found[name] = replace(case, name=name)
     return list(found.values())
 
 

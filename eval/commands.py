@@ -10,7 +10,7 @@ from typing import Annotated
 from tyro.conf import Positional, arg
 
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.eval.console import progress_bar, results_console
+from mrta_zoo.eval.console import preparing, progress_bar, results_console
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.rows import Row
@@ -113,7 +113,8 @@ def solve_command(argv: Sequence[str]) -> None:
     outputs = {"--out": command.out, "--plot": command.plot}
     check_distinct(outputs, {"the task file": command.taskfile, "the agent file": agent_file(command)})
     scenario = read_scenario(command.taskfile, command.agents)
-    solver = command.planning.solver(command.method)
+    with preparing():
+        solver = command.planning.solver(command.method)
     with cpu_threads(command.planning.threads):
         solved = solve_and_score(solver, scenario)
     if command.out:
@@ -196,7 +197,8 @@ def eval_command(argv: Sequence[str]) -> None:
     command = parse(Eval, argv, "eval")
     if command.out:
         check_destination(command.out)
-    solvers = {method: command.planning.solver(method) for method in names(command.methods)}
+    with preparing():
+        solvers = {method: command.planning.solver(method) for method in names(command.methods)}
     cases = builtin_cases() if command.cases == BUILTIN else read_cases(command.cases)
     with cpu_threads(command.planning.threads):
         rows = run_with_progress(cases, solvers)

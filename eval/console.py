@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import AbstractContextManager, nullcontext
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
@@ -15,6 +16,14 @@ def results_console() -> Console:
     """Standard output, for results. Text is printed as it is: no markup, no highlighting."""
     width = None if sys.stdout.isatty() else PIPED_WIDTH
     return Console(file=sys.stdout, width=width, markup=False, highlight=False, emoji=False)
+
+
+def preparing() -> AbstractContextManager[object]:
+    """A sign of life on standard error while methods are made ready, if that is a terminal."""
+    console = Console(file=sys.stderr, markup=False, highlight=False, emoji=False)
+    if not console.is_terminal:
+        return nullcontext()
+    return console.status("preparing (local search is compiled at its first use, which can take a minute)")
 
 
 def progress_bar() -> Progress:

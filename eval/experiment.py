@@ -12,6 +12,7 @@ from typing import Any, Literal, TypeVar
 
 import msgspec
 import numpy as np
+from filelock import FileLock, Timeout
 
 from mrta_zoo import __version__
 from mrta_zoo.errors import ConfigError
@@ -25,6 +26,7 @@ from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import METHODS, POLISH
 
 MANIFEST = "manifest.json"
+_LOCKS: list[FileLock] = []  # held until the process ends
 Settings = Mapping[str, Any]
 Key = TypeVar("Key")
 
@@ -58,7 +60,7 @@ def make_manifest(command: str, settings: Settings, cases: Iterable[Case], metho
 
 
 def open_experiment(folder: Path, manifest: Manifest) -> None:
-    """Make the folder, or make sure that what it holds is the same experiment, begun earlier.
+    """Make the folder, or make sure that what it holds is the same experiment, begun earlier. One process at a time.
 
     Raises:
         ConfigError: if it holds anything else, or cannot be made.
@@ -68,14 +70,16 @@ def open_experiment(folder: Path, manifest: Manifest) -> None:
         if os.path.exists(folder) and not os.path.isdir(folder):
             raise ConfigError(f"{folder} is a file; expected a folder, new, empty, or of this command")
         if not os.path.lexists(path):
-            if os.path.isdir(folder) and os.listdir(folder):
+            if os.path.isdir(folder) and any(not name.startswith(".") for name in os.listdir(folder)):
                 raise ConfigError(
                     f"{folder} is not empty and holds no {MANIFEST}; expected a folder that is new, empty, or of "
                     "this command"
                 )
             folder.mkdir(parents=True, exist_ok=True)
+            _lock(folder)
             write_text(json.dumps(asdict(manifest), indent=2, ensure_ascii=False) + "\n", path, ConfigError)
             return
+        _lock(folder)
         earlier = msgspec.json.decode(path.read_bytes(), type=Manifest)
     except OSError as error:
         raise ConfigError(f"{folder} cannot be used: {(error.strerror or str(error)).lower()}") from None
@@ -86,6 +90,16 @@ def open_experiment(folder: Path, manifest: Manifest) -> None:
             f"{folder} holds results of another run: {difference}; expected the same command on the same cases, or a "
             "new folder"
         )
+
+
+def _lock(folder: Path) -> None:
+    """Keep other processes out of the folder until this one ends, however it ends."""
+    lock = FileLock(folder / ".lock", is_singleton=True)
+    try:
+        lock.acquire(timeout=0)
+    except Timeout:
+        raise ConfigError(f"{folder} is in use by another run; expected to wait for its end, or a new folder") from None
+    _LOCKS.append(lock)
 
 
 def _difference(earlier: Manifest, now: Manifest) -> str:
@@ -131,9 +145,13 @@ def measure(
         what: said in front of the progress bar.
 
     Raises:
-        MrtaError: if a method fails on a case.
+        MrtaError: if a method fails on a case, or the file has a row twice.
     """
-    done = {known(row) for row in file.rows}
+    keys = [key for row in file.rows if (key := known(row)) is not None]
+    done = set(keys)
+    if len(done) < len(keys):
+        twice = next(key for index, key in enumerate(keys) if key in keys[:index])
+        raise ConfigError(f"{file.path} has two rows for method {twice[1]} on case {twice[0]}; expected one")
     with progress_bar() as progress:
         bar = progress.add_task(what, total=len(cases) * len(solvers))
         for method, solver in solvers.items():

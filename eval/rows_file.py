@@ -67,7 +67,10 @@ class RowsFile(Generic[RowType]):
             write_text(whole, self.path, ConfigError)
         if not whole:
             return
-        header, *lines = csv.reader(io.StringIO(whole))
+        try:
+            header, *lines = csv.reader(io.StringIO(whole))
+        except csv.Error as error:
+            raise ConfigError(f"{self.path}: {error}; expected rows of this command") from None
         if header != self._columns:
             raise ConfigError(f"{self.path}, line 1: the columns are {header}; expected {self._columns}")
         self._whole_header = True

@@ -37,7 +37,7 @@ def proven(score: Score, bound: int | None) -> str:
         return ""
     if score.completed == bound:
         return "proven optimal: no plan completes more tasks"
-    return f"no plan completes more than {bound} tasks"
+    return f"not proven optimal: it may be; no plan completes more than {bound} tasks"
 
 
 def totals(score: Score) -> str:

@@ -11,7 +11,7 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "plot": ("matplotlib",),
     "solvers": ("scipy", "numba"),
     "pyvrp": ("pyvrp",),
-    "report": ("scipy", "statsmodels", "pandas", "jinja2", "matplotlib"),
+    "report": ("filelock", "scipy", "statsmodels", "pandas", "jinja2", "matplotlib"),
 }
 """Each extra with the modules it brings, in so far as we import them."""
 
@@ -29,6 +29,5 @@ def require(extra: str, what: str) -> None:
     missing = [module for module in EXTRAS[extra] if find_spec(module) is None]
     if missing:
         raise MissingExtraError(
-            f"{what} needs {' and '.join(missing)}, not installed here; install it with: "
-            f'pip install "mrta_zoo[{extra}]"'
+            f'{what} needs {", ".join(missing)}, not installed here; install it with: pip install "mrta_zoo[{extra}]"'
         )

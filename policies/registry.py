@@ -15,8 +15,6 @@ from mrta_zoo.extras import require
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.aec_loop import run_in_environment
 from mrta_zoo.policies.big_mrta import BigMrtaSolver
-from mrta_zoo.policies.exact.solver import BUDGET as EXACT_BUDGET
-from mrta_zoo.policies.exact.solver import ExactSolver
 from mrta_zoo.policies.heuristics import EarliestDeadlinePolicy, NearestPolicy, RandomPolicy
 from mrta_zoo.policies.options import Decode, SolverOptions
 from mrta_zoo.policies.pretrained import pretrained_names
@@ -102,6 +100,12 @@ def _eils(options: SolverOptions) -> Solver:
     return EilsSolver(options.seed, options.budget)
 
 
+def _exact(options: SolverOptions) -> Solver:
+    from mrta_zoo.policies.exact.solver import BUDGET, ExactSolver
+
+    return ExactSolver(budget=options.budget or BUDGET)
+
+
 METHODS: dict[str, Method] = {
     "random": Method(
         "any feasible task, drawn evenly",
@@ -120,15 +124,19 @@ METHODS: dict[str, Method] = {
         lambda options: BigMrtaSolver(),
         extra="solvers",
     ),
-    "ils": Method("iterated local search", _ils, extra="solvers"),
-    "eils": Method("local search with strings removed and refilled, accepted as in annealing", _eils, extra="solvers"),
+    "ils": Method("iterated local search (Vansteenwegen et al. 2009), compiled", _ils, extra="solvers"),
+    "eils": Method(
+        "local search in the spirit of EILS (details unknown): removes and refills strings of visits",
+        _eils,
+        extra="solvers",
+    ),
     "exact": Method(
         "as many tasks as possible, proven; for small missions",
-        lambda options: ExactSolver(budget=options.budget or EXACT_BUDGET),
+        _exact,
         extra="solvers",
     ),
     "pyvrp": Method(
-        "the routing solver PyVRP, which searches as long as the budget lasts",
+        "the routing solver PyVRP, which searches until the budget ends or nothing more comes",
         lambda options: PyVrpSolver(seed=options.seed, budget=options.budget or PYVRP_BUDGET),
         extra="pyvrp",
     ),

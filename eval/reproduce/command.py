@@ -12,7 +12,7 @@ from tyro.conf import arg
 from mrta_zoo import __version__
 from mrta_zoo.errors import ConfigError, MissingExtraError
 from mrta_zoo.eval.case_choice import read_all, shown_cases
-from mrta_zoo.eval.console import results_console
+from mrta_zoo.eval.console import preparing, results_console
 from mrta_zoo.eval.experiment import Manifest, make_manifest, measure, open_experiment
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.machine import Session, this_session
@@ -34,7 +34,7 @@ from mrta_zoo.eval.statistics import LEVEL, RESAMPLES
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import Case
 from mrta_zoo.policies.protocol import Solver
-from mrta_zoo.policies.registry import make_solver, method_names
+from mrta_zoo.policies.registry import METHODS, make_solver, method_names
 from mrta_zoo.suite import small_suite
 
 USUAL = (
@@ -88,7 +88,8 @@ def reproduce_command(argv: Sequence[str]) -> None:
     absent: dict[str, str] = {}
     methods = usual_methods(absent) if command.methods is None else names(command.methods)
     against = reference_of(methods, command.against)
-    solvers = {method: _solver(method, command) for method in methods}
+    with preparing():
+        solvers = {method: _solver(method, command) for method in methods}
     cases = read_all(command.cases)
     settings = {"cases": shown_cases(command.cases), "methods": methods, "budget": command.budget, "seed": command.seed,
                 "threads": command.threads}  # fmt: skip
@@ -164,6 +165,13 @@ def _made(
             "environment. A task counts as completed if its work is finished by its deadline.",
         ),
         ("Trained methods", "one greedy pass, no search"),
+        *((name, METHODS[name].summary) for name in settings["methods"] if name in METHODS),
+        (
+            "Effort",
+            "methods that search stop by themselves, pyvrp after the seconds named below"
+            if settings["budget"] is None
+            else f"methods that search (ils, eils, pyvrp, exact) had {settings['budget']:g} s a case",
+        ),
         (
             "Statistics",
             f"SciPy and statsmodels: BCa bootstrap with {RESAMPLES} resamples (percentile bootstrap where BCa has no "

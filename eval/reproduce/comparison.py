@@ -36,8 +36,9 @@ class Comparison:
 
     @property
     def significant(self) -> bool:
-        """Whether the adjusted t-test says that the means differ."""
-        return self.t_p is not None and self.t_p < SIGNIFICANT
+        """Whether the adjusted t-test (the Wilcoxon test where all differences are the same) says that means differ."""
+        p = self.wilcoxon_p if self.t_p is None else self.t_p
+        return p is not None and p < SIGNIFICANT
 
     @property
     def verdict(self) -> str:
@@ -147,9 +148,10 @@ def _overall_table(study: Study, tasks: int, chosen: list[Comparison]) -> Table:
         )
     caption = (
         f"{study.against} minus each method over all cases with {tasks} tasks: mean difference in percentage points "
-        f"and d_z, each with its {wording.INTERVAL} in brackets (BCa bootstrap within each number of robots; "
+        f"and d_z, each with its {wording.INTERVAL} in brackets ({wording.BOOTSTRAP}; "
         f"noncentral t); cases in which {study.against} completes more, equally many, fewer tasks; Holm-adjusted "
-        f"p-values, two-sided. n = {study.cases(study.groups(tasks)[0])} pairs."
+        "p-values, two-sided. Intervals are for each line alone and not adjusted, so one may leave out 0 where the "
+        f"adjusted test sees no difference. n = {study.cases(study.groups(tasks)[0])} pairs."
     )
     return Table(name=f"paired_tests_{tasks}", caption=caption, shown=pd.DataFrame(shown), data=_data(chosen))
 

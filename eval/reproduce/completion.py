@@ -32,7 +32,7 @@ def completion_section(study: Study) -> Section:
             estimate_table(
                 study, tasks, "percent", f"completion_{tasks}",
                 f"Tasks completed in time, mean % of the {tasks} tasks of a case, with the {wording.INTERVAL} of the "
-                f"mean in brackets (BCa bootstrap over cases, within each number of robots). "
+                f"mean in brackets ({wording.BOOTSTRAP}). "
                 f"{case_counts(study, tasks)} Bold: the highest mean of a column, be the lead significant or not.",
             )
         )  # fmt: skip

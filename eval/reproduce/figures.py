@@ -51,7 +51,9 @@ def draw_boxes(study: Study, tasks: int) -> Figure:
     """Completion by method and number of robots as horizontal box plots over the cases."""
     groups = [group for group in study.groups(tasks) if group.robots is not None]
     figure, panels = _panels(study, groups, 2.75)
+    everything = study.frame.loc[study.frame["tasks"] == tasks, "percent"]
     for axes, group in zip(panels, groups, strict=True):
+        axes.set_xlim(everything.min() - 3, everything.max() + 3)
         for row, method in enumerate(study.methods):
             values = study.select(group, method)["percent"].to_numpy()
             colour, _ = style_of(method, study.methods)

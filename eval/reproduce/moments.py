@@ -17,7 +17,11 @@ def moments_section(study: Study) -> Section:
     lacking = [f"{method} ({name})" for method, name in paper.NAMES.items() if method not in present]
     text = []
     if lacking:
-        text.append(f"Not among the methods that were run: {wording.listed(lacking)}.")
+        text.append(
+            f"Not among the methods that were run: {wording.listed(lacking)}. A policy that does not ship with this "
+            "version can be trained (mrta-zoo train --preset fast --moments 1, or --encoder am) into a folder of that "
+            "name, which is then named in --methods."
+        )
     if not present:
         return Section(title=title, text=tuple(text))
     text.append(paper.CAVEAT)

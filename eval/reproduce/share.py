@@ -40,7 +40,7 @@ def share_section(study: Study) -> Section:
     for tasks in shares.sizes:
         caption = (
             f"Tasks completed, mean % of the tasks of the best known plan, {tasks} tasks, with its {wording.INTERVAL} "
-            f"(BCa bootstrap over cases, within each number of robots). {case_counts(shares, tasks)}"
+            f"({wording.BOOTSTRAP}). {case_counts(shares, tasks)}"
         )
         table = estimate_table(
             shares,

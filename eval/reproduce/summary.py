@@ -130,7 +130,8 @@ def _not_told_apart(tasks: int, pairs: Pairs) -> list[str]:
         ]
     return [
         f"Of any two methods, no significant difference over the cases with {tasks} tasks is between "
-        f"{wording.listed(alike)}; all other differences are significant."
+        f"{wording.listed(alike)}{'; all other differences are significant' if len(alike) < len(pairs) else ''}. "
+        "This is adjusted for all pairs, and so a little stricter than the comparison above."
     ]
 
 

@@ -35,7 +35,8 @@ def timing_section(study: Study, sessions: Sequence[Session]) -> Section:
     caption = (
         "Time to plan a whole mission, mean over the cases, and the same time divided by the tasks completed, which is "
         "the time for one decision of methods that decide task by task. Wall clock, one mission at a time, on the "
-        f"machine named at the end. n = {counts}. Means of what was measured, without intervals."
+        f"machine named at the end. n = {counts}. Means of what was measured, without intervals. Methods that "
+        "search take what budget they are given; by default ils and eils stop by themselves."
     )
     if theirs:
         caption += f" Last column: Table II of the paper ({paper.SOURCE}), measured on another machine."

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mrta_zoo.eval.statistics import LEVEL, TOO_FEW, Estimate
+from mrta_zoo.eval.statistics import LEAST_OF_STRATUM, LEVEL, TOO_FEW, Estimate
 
 INTERVAL = f"{100 * LEVEL:.0f} % interval"
+BOOTSTRAP = (
+    f"BCa bootstrap over cases, within each number of robots if it has at least {LEAST_OF_STRATUM} cases everywhere"
+)
 DASH = "–"
 
 

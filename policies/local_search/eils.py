@@ -25,6 +25,7 @@ from mrta_zoo.policies.local_search.insertion import fill
 from mrta_zoo.policies.local_search.problem import Problem, make_problem, smallest_scenario
 from mrta_zoo.policies.local_search.tours import Tours, copy_tour, copy_tours, empty_tours, plan_of, remove, tours_of
 from mrta_zoo.scenario import FloatArray, Scenario
+from mrta_zoo.verify import verify
 
 CHUNK = 100
 """Iterations between two looks at the clock."""
@@ -35,7 +36,8 @@ class EilsConfig:
     """How the search goes; times are multiples of what a visit takes on average in the first plan.
 
     Attributes:
-        iterations_a_task: without a budget the search ends after so many iterations for each task, >= 1.
+        iterations_a_task: without a budget the search ends after so many iterations for each task, >= 1,
+        least_iterations: but not before so many, >= 1.
         removals: visits that a perturbation removes on average, >= 1.
         noise: random weights of Shift lie between 1 and 1 + noise, >= 0.
         reward: what a completed task is worth, in time, > 0.
@@ -47,6 +49,7 @@ class EilsConfig:
     """
 
     iterations_a_task: int = 3
+    least_iterations: int = 300
     removals: float = 12.0
     noise: float = 1.0
     reward: float = 4.0
@@ -54,7 +57,7 @@ class EilsConfig:
     cold: float = 0.05
 
     def __post_init__(self) -> None:
-        for field in ("iterations_a_task", "removals"):
+        for field in ("iterations_a_task", "least_iterations", "removals"):
             if not 1 <= getattr(self, field) < math.inf:
                 raise ConfigError(f"{field} is {getattr(self, field)}; expected a number >= 1")
         for field in ("reward", "hot", "cold"):
@@ -83,7 +86,7 @@ class EilsSolver:
         return self.improve(scenario, Plan(((),) * scenario.num_robots), "eils")
 
     def improve(self, scenario: Scenario, plan: Plan, method: str) -> Plan:
-        """A plan that completes at least as many tasks as `plan`, with no late visits.
+        """A plan that completes at least as many tasks as `plan`, with no late visits unless it is the same.
 
         Args:
             scenario: the mission.
@@ -117,7 +120,7 @@ def _improve(scenario: Scenario, plan: Plan, method: str, seed: int, budget: flo
     copy_tours(tours, best)
     visit_time = total_time(tours) / visits
     rng = np.random.default_rng(seed)
-    iterations = config.iterations_a_task * scenario.num_tasks
+    iterations = max(config.iterations_a_task * scenario.num_tasks, config.least_iterations)
     done, share = 0, 0.0
     while share < 1.0:
         chunk = CHUNK if budget is not None else min(CHUNK, iterations - done)
@@ -128,6 +131,8 @@ def _improve(scenario: Scenario, plan: Plan, method: str, seed: int, budget: flo
         )  # fmt: skip
         done += chunk
         share = done / iterations if budget is None else (time.perf_counter() - begun) / budget
+    if verify(scenario, plan).completed > best.size.sum():  # a late visit, dropped, made another one late by rounding
+        return Plan(plan.routes, scenario.name, method)
     return plan_of(best, scenario, method)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 from numba import njit
 
-from mrta_zoo.policies.local_search.problem import Problem
+from mrta_zoo.policies.local_search.problem import TOLERANCE, Problem
 from mrta_zoo.policies.local_search.tours import Tours, insert
 from mrta_zoo.scenario import FloatArray
 
@@ -27,29 +27,40 @@ def fill(
         open_tours: (M,) the tours that may get tasks.
         weight: (N,) > 0, what the Shift of each task is multiplied by.
     """
-    m, n = problem.work.shape
+    m = len(problem.speed)
+    best_task, best_value = np.full(m, -1), np.full(m, np.inf)
     for robot in range(m):
         if open_tours[robot]:
             _look_up(problem, tours, shift, robot)
+            best_task[robot], best_value[robot] = _choose(tours, shift, robot, weight)
     while True:
-        least, chosen, chosen_robot = np.inf, -1, -1
-        for robot in range(m):
-            if open_tours[robot]:
-                for task in range(n):
-                    value = shift[robot, task] * weight[task]
-                    if value < least and tours.robot[task] < 0:
-                        least, chosen, chosen_robot = value, task, robot
-        if chosen < 0:
+        robot = best_value.argmin()
+        if best_value[robot] == np.inf:
             break
-        inserted = insert(problem, tours, chosen, chosen_robot, _best_position(problem, tours, chosen, chosen_robot))
+        task = best_task[robot]
+        inserted = insert(problem, tours, task, robot, _best_position(problem, tours, task, robot))
         position = 0
-        while not inserted and position <= tours.size[chosen_robot]:  # the look-up was wrong by a rounding error
-            inserted = insert(problem, tours, chosen, chosen_robot, position)
+        while not inserted and position <= tours.size[robot]:  # the look-up was wrong by a rounding error
+            inserted = insert(problem, tours, task, robot, position)
             position += 1
         if inserted:
-            _look_up(problem, tours, shift, chosen_robot)
+            _look_up(problem, tours, shift, robot)
         else:
-            shift[chosen_robot, chosen] = np.inf
+            shift[robot, task] = np.inf
+        for other in range(m):
+            if other == robot or (inserted and best_task[other] == task):
+                best_task[other], best_value[other] = _choose(tours, shift, other, weight)
+
+
+@njit(cache=True)
+def _choose(tours: Tours, shift: FloatArray, robot: int, weight: FloatArray) -> tuple[int, float]:
+    """The unvisited task with the least weighted Shift in a tour, and that; (-1, inf) if none fits."""
+    chosen, least = -1, np.inf
+    for task in range(len(weight)):
+        value = shift[robot, task] * weight[task]
+        if value < least and tours.robot[task] < 0:
+            chosen, least = task, value
+    return chosen, least
 
 
 @njit(cache=True)
@@ -62,11 +73,12 @@ def _look_up(problem: Problem, tours: Tours, shift: FloatArray, robot: int) -> N
     pace, size = 1.0 / problem.speed[robot], tours.size[robot]
     place, ready = len(work) + robot, 0.0
     least[:] = np.inf
+    tolerance = TOLERANCE * tours.finish[robot, size - 1] if size > 0 else 0.0
     # Tasks in the inner loop, no branches and few arrays there: that is compiled to vector instructions.
     for position in range(size):
         following = tours.tasks[robot, position]
         to, onward = problem.distance[place], problem.distance[following]
-        leg, slack = tours.leg[robot, position], tours.max_shift[robot, position] + problem.tolerance
+        leg, slack = tours.leg[robot, position], tours.max_shift[robot, position] + tolerance
         for task in range(len(work)):
             new = max((to[task] + onward[task]) * pace + work[task] - leg, 0.0)
             fits = (ready + to[task] * pace <= latest[task]) & (new <= slack)
@@ -90,7 +102,7 @@ def _best_position(problem: Problem, tours: Tours, task: int, robot: int) -> int
         following = tours.tasks[robot, position]
         to, onward = problem.distance[place, task], problem.distance[following, task]
         shift = max((to + onward) * pace + work - tours.leg[robot, position], 0.0)
-        fits = shift <= tours.max_shift[robot, position] + problem.tolerance
+        fits = shift <= tours.max_shift[robot, position] + TOLERANCE * tours.finish[robot, size - 1]
         if fits and ready + to * pace <= latest and shift < least:
             least, best = shift, position
         place, ready = following, tours.finish[robot, position]

@@ -11,7 +11,7 @@ from mrta_zoo.rules import travel_time
 from mrta_zoo.scenario import FloatArray, Scenario
 
 TOLERANCE = 1e-9
-"""Share of the latest deadline by which the look-up of an insertion may be wrong; insertions are checked exactly."""
+"""Share of a time by which the look-up of an insertion may be wrong; insertions are checked exactly."""
 
 
 class Problem(NamedTuple):
@@ -24,7 +24,6 @@ class Problem(NamedTuple):
         latest: (M, N) when each robot must have reached each task, with the tolerance.
         speed: (M,) of each robot.
         neighbours: (N, N') for each task the others, nearest first, at most `MOST_NEIGHBOURS`.
-        tolerance: time by which looked-up insertions may be wrong.
     """
 
     distance: FloatArray
@@ -33,7 +32,6 @@ class Problem(NamedTuple):
     latest: FloatArray
     speed: FloatArray
     neighbours: npt.NDArray[np.int64]
-    tolerance: float
 
 
 MOST_NEIGHBOURS = 100
@@ -49,15 +47,13 @@ def make_problem(scenario: Scenario) -> Problem:
     between = distance[:n].copy()
     np.fill_diagonal(between, -1.0)
     work = scenario.workload[None, :] / scenario.capacity[:, None]
-    tolerance = TOLERANCE * float(scenario.deadline.max())
     return Problem(
         distance=distance,
         work=work,
         deadline=scenario.deadline.copy(),
-        latest=scenario.deadline - work + tolerance,
+        latest=scenario.deadline * (1.0 + TOLERANCE) - work,
         speed=scenario.speed.copy(),
         neighbours=np.argsort(between, axis=1, kind="stable")[:, 1 : count + 1].copy(),
-        tolerance=tolerance,
     )
 
 

@@ -73,7 +73,7 @@ def test_the_command_draws_and_resumes(tmp_path: Path, capsys: pytest.CaptureFix
     assert main(["generate", "--count", "5", "--tasks", "6", "--robots", "2", "--out", cases]) == 0
     flags = ["converge", "--cases", cases, "--methods", "capam-plus", "--points", "nearest", "--out", str(out)]
     assert main([*flags, "--budgets", "0.01,0.05"]) == 0
-    assert {path.name for path in out.iterdir()} == {
+    assert {path.name for path in out.glob("[!.]*")} == {
         "manifest.json", "rows.csv", "sessions.csv", "curves.csv", "curves.png", "curves.svg",
     }  # fmt: skip
     whole = (out / "rows.csv").read_text()

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mrta_zoo.errors import ConfigError, ScenarioError
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.case_choice import read_all, shown_cases
 from mrta_zoo.eval.converge.curves import BudgetRow
 from mrta_zoo.eval.experiment import (
@@ -145,7 +145,7 @@ def test_foreign_folders_are_refused(tmp_path: Path) -> None:
     (tmp_path / MANIFEST).write_text('{"mine": true}')
     with pytest.raises(ConfigError, match="expected what this command has written there"):
         open_experiment(tmp_path, MANIFEST_NOW)
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["file", MANIFEST]
+    assert sorted(path.name for path in tmp_path.glob("[!.]*")) == ["file", MANIFEST]
 
 
 def test_digests_tell_cases_and_weights_apart(tmp_path: Path) -> None:
@@ -169,7 +169,32 @@ def test_cases_of_several_folders(tmp_path: Path) -> None:
     assert shown_cases(f"{tmp_path}/one/,{tmp_path}/two") == "one,two"
     assert [len(read_all("builtin")), shown_cases("builtin")] == [192, "builtin"]
     (tmp_path / "two" / "one.csv").write_bytes((tmp_path / "one" / "one.csv").read_bytes())
-    with pytest.raises(ScenarioError, match=r"two holds a case called 'one', as another folder does"):
-        read_all(f"{tmp_path}/one,{tmp_path}/two")
+    found = read_all(f"{tmp_path}/one,{tmp_path}/two")
+    assert [case.name for case in found] == ["one", "two/one", "two"]
+    assert found[1].scenario.name == "one"
     with pytest.raises(ConfigError, match="is named twice"):
         read_all(f"{tmp_path}/one,{tmp_path}/one")
+
+
+def test_two_runs_cannot_share_a_folder(tmp_path: Path) -> None:
+    from filelock import FileLock
+
+    folder = tmp_path / "out"
+    folder.mkdir()
+    with FileLock(folder / ".lock"), pytest.raises(ConfigError, match="is in use by another run"):
+        open_experiment(folder, make_manifest("reproduce", {}, CASES, []))
+    open_experiment(folder, make_manifest("reproduce", {}, CASES, []))
+
+
+def test_a_row_that_is_there_twice_is_refused(tmp_path: Path) -> None:
+    file = RowsFile(tmp_path / "rows.csv", Row)
+    measure(CASES, {"nearest": make_solver("nearest")}, file, row_of, lambda row: (row.case, row.method))
+    file.append(file.rows[0])
+    with pytest.raises(ConfigError, match=r"rows\.csv has two rows for method nearest on case"):
+        measure(CASES, {"nearest": make_solver("nearest")}, file, row_of, lambda row: (row.case, row.method))
+
+
+def test_garbage_that_csv_cannot_hold_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "rows.csv").write_text("x" * 200_000 + "\n")
+    with pytest.raises(ConfigError, match="field larger than field limit"):
+        RowsFile(tmp_path / "rows.csv", Row)

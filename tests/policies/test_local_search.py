@@ -205,7 +205,7 @@ def test_a_plan_is_only_improved() -> None:
     for _ in range(5):
         case = TaptcGenerator(tasks=(40, 40), robots=(3, 3))(rng)
         nearest = make_solver("nearest").solve(case)
-        better = EilsSolver(config=EilsConfig(iterations_a_task=1)).improve(case, nearest, "polished")
+        better = EilsSolver(config=EilsConfig(least_iterations=50)).improve(case, nearest, "polished")
         assert better.method == "polished"
         assert verify(case, better).completed >= verify(case, nearest).completed
 
@@ -227,7 +227,14 @@ def test_the_budget_ends_the_search(solver: IlsSolver | EilsSolver, monkeypatch:
 
 @pytest.mark.parametrize(
     ("option", "value"),
-    [("iterations_a_task", 0), ("removals", math.nan), ("noise", -1.0), ("reward", 0.0), ("hot", math.inf)],
+    [
+        ("iterations_a_task", 0),
+        ("least_iterations", 0),
+        ("removals", math.nan),
+        ("noise", -1.0),
+        ("reward", 0.0),
+        ("hot", math.inf),
+    ],
 )
 def test_bad_settings(option: str, value: float) -> None:
     with pytest.raises(ConfigError, match=f"{option} is {value}; expected a number"):
@@ -266,3 +273,32 @@ def test_a_visit_that_rounding_makes_late_without_its_detour_is_dropped() -> Non
     remove(problem, tours, 0, 0, 5)
     assert route(tours) == []
     check(problem, scenario, tours)
+
+
+def test_a_better_plan_than_can_be_kept_without_its_late_visits_is_left_as_it_is() -> None:
+    start = [1.4742614404622973, 0.7371307202311487]
+    scenario = Scenario(
+        task_xy=[start, [3.6856536011557433, 1.8428265005778716], [2.9485228809245947, 1.4742614404622973]],
+        deadline=[4.944823196220684, 2.472411598110342, 1.6482743987402277],
+        workload=[0, 0, 0],
+        robot_xy=[start, start],
+        capacity=[1, 1],
+    )
+    for routes in ([[0], [2, 1]], [[2, 1], [0]]):
+        plan = Plan.of(routes)
+        better = EilsSolver().improve(scenario, plan, "x")
+        assert verify(scenario, better).completed >= verify(scenario, plan).completed
+
+
+@pytest.mark.parametrize("solver", [IlsSolver(), EilsSolver()], ids=["ils", "eils"])
+def test_one_deadline_far_beyond_the_others_changes_little(solver: IlsSolver | EilsSolver) -> None:
+    case = TaptcGenerator(tasks=(60, 60), robots=(3, 3))(np.random.default_rng(8))
+    deadline = case.deadline.copy()
+    deadline[0] = 1e12
+    mixed = Scenario(
+        task_xy=case.task_xy, deadline=deadline, workload=case.workload, robot_xy=case.robot_xy,
+        capacity=case.capacity, speed=case.speed, map_size=case.map_size,
+    )  # fmt: skip
+    assert verify(mixed, solver.solve(mixed)).completed >= verify(case, solver.solve(case)).completed - 1
+    problem = make_problem(mixed)
+    assert (problem.latest[:, 1:] - (deadline - problem.work)[:, 1:] < 1e-6).all()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from strategies import seeded_scenarios
@@ -163,6 +164,6 @@ def test_the_search_has_what_the_method_leaves_of_the_budget(monkeypatch: pytest
     for seconds in (0.5, 3.0):  # that the method takes
         clock = iter([10.0, 10.0 + seconds])
         solver = make_solver("nearest+polish", budget=2.0)
-        monkeypatch.setattr(polish.time, "perf_counter", lambda clock=clock: next(clock, 99.0))
+        monkeypatch.setattr(polish, "time", SimpleNamespace(perf_counter=clock.__next__))
         solver.solve(scenario)
     assert budgets == [None, 1.5, None, polish.LEAST_BUDGET]
