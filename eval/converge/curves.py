@@ -93,12 +93,6 @@ def draw_curves(curves: pd.DataFrame) -> Figure:
                 axes.plot(at, mean, marker, color=colour, markersize=7, markerfacecolor="white", zorder=3)
                 axes.annotate(f"{method},\nno budget", (at, mean), (-8, 0), textcoords="offset points", fontsize=9,
                               color=INK, ha="right", va="center", zorder=4, path_effects=HALO)  # fmt: skip
-            spans = line.dropna(subset=["low", "high"])
-            axes.errorbar(
-                spans["mean_seconds"], spans["mean_percent"], fmt="none", ecolor=colour, elinewidth=1.2, capsize=3,
-                alpha=0.6, zorder=2,
-                yerr=np.abs(spans[["low", "high"]].astype(float).T.to_numpy() - spans["mean_percent"].to_numpy()),
-            )  # fmt: skip
         _name_ends(axes, ends)
         axes.set_title(f"{tasks} tasks, {panel['cases'].max()} cases", fontsize=10, color=INK, loc="left")
         axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")

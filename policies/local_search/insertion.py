@@ -34,21 +34,21 @@ def fill(
             _look_up(problem, tours, shift, robot)
             best_task[robot], best_value[robot] = _choose(tours, shift, robot, weight)
     while True:
-        robot = best_value.argmin()
-        if best_value[robot] == np.inf:
+        winner = int(best_value.argmin())
+        if best_value[winner] == np.inf:
             break
-        task = best_task[robot]
-        inserted = insert(problem, tours, task, robot, _best_position(problem, tours, task, robot))
+        task = best_task[winner]
+        inserted = insert(problem, tours, task, winner, _best_position(problem, tours, task, winner))
         position = 0
-        while not inserted and position <= tours.size[robot]:  # the look-up was wrong by a rounding error
-            inserted = insert(problem, tours, task, robot, position)
+        while not inserted and position <= tours.size[winner]:  # the look-up was wrong by a rounding error
+            inserted = insert(problem, tours, task, winner, position)
             position += 1
         if inserted:
-            _look_up(problem, tours, shift, robot)
+            _look_up(problem, tours, shift, winner)
         else:
-            shift[robot, task] = np.inf
+            shift[winner, task] = np.inf
         for other in range(m):
-            if other == robot or (inserted and best_task[other] == task):
+            if other == winner or (inserted and best_task[other] == task):
                 best_task[other], best_value[other] = _choose(tours, shift, other, weight)
 
 
