@@ -21,7 +21,7 @@ from mrta_zoo.verify import verify
 
 BUDGET = 60.0
 MAX_STATES = 4_000_000
-MAX_SETS = 20_000
+MAX_SETS = 2_000
 """How many sets a kind of robot may choose from once there is nothing left to prove."""
 PROVABLE_SETS = 100_000
 """More sets than this HiGHS does not get through in the time that it is given."""
