@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 from mrta_zoo.generators import Mixture, ScenarioGenerator, TaptcGenerator, UniformGenerator
-from mrta_zoo.train.config import TrainConfig
 
 
-def training_generator(config: TrainConfig) -> ScenarioGenerator:
-    """The generator of a run's training and validation scenarios."""
-    tasks = (config.tasks, config.tasks)
-    robots = (config.min_robots, config.max_robots)
-    taptc = TaptcGenerator(tasks=tasks, robots=robots)
-    uniform = UniformGenerator(tasks=tasks, robots=robots)
-    if config.generator == "taptc":
+def training_generator(name: str, tasks: int, min_robots: int, max_robots: int) -> ScenarioGenerator:
+    """The generator of training and validation scenarios of one size.
+
+    Args:
+        name: "taptc" (fitted to the benchmark), "uniform" (paper §IV-A), or "mixture": 2/5 each of these two, and 1/5
+            TAPTC-like with robots of capacity 1 or 2 at random and deadlines from a wider range.
+        tasks: number of tasks.
+        min_robots: fewest robots.
+        max_robots: most robots.
+    """
+    size, team = (tasks, tasks), (min_robots, max_robots)
+    taptc = TaptcGenerator(tasks=size, robots=team)
+    uniform = UniformGenerator(tasks=size, robots=team)
+    if name == "taptc":
         return taptc
-    if config.generator == "uniform":
+    if name == "uniform":
         return uniform
-    return Mixture((taptc, uniform))
+    wide = TaptcGenerator(tasks=size, robots=team, capacity="random", latest=(210.0, 320.0), min_deadline=20.0)
+    return Mixture((taptc, wide, uniform), (0.4, 0.2, 0.4))
