@@ -111,6 +111,10 @@ class ScenarioBatch:
         """Where the tensors are."""
         return self.deadline.device
 
+    def to(self, device: torch.device | str) -> ScenarioBatch:
+        """The same scenarios on another device."""
+        return ScenarioBatch(*(getattr(self, f.name).to(device) for f in fields(self)))
+
     def repeat(self, times: int) -> ScenarioBatch:
         """Each scenario `times` times in a row: rows k·times … (k+1)·times − 1 are scenario k."""
         return ScenarioBatch(*(getattr(self, f.name).repeat_interleave(times, 0) for f in fields(self)))
@@ -170,13 +174,14 @@ class BatchMission:
         allowed: Tensor = self._allowed[self._rows, self.actor.clamp(min=0)]
         return self.untaken & allowed & ~self.done[:, None]
 
-    def step(self, task: Tensor) -> None:
+    def step(self, task: Tensor, where: Tensor | None = None) -> None:
         """Let the acting robot of each mission take `task` (B,) int64; ignored where the mission is over.
 
-        The choice must be legal under `mask`; for speed this is not checked here.
+        The choice must be legal under `mask`; for speed this is not checked here. Missions that are not marked in
+        `where`, (B,) bool, stay as they are.
         """
         s, rows = self.scenarios, self._rows
-        live = ~self.done
+        live = ~self.done if where is None else where & ~self.done
         robot = self.actor.clamp(min=0)
         task = torch.where(live, task, torch.zeros_like(task))
 
@@ -199,6 +204,15 @@ class BatchMission:
         finish_if = finish_time(ready[:, None], travel, work)
         self.finish_if[rows, robot] = finish_if
         self._allowed[rows, robot] = may_choose(self.mask_rule, finish_if, ready[:, None], s.deadline)
+        self._advance()
+
+    def retire(self, where: Tensor) -> None:
+        """Let the acting robot retire, whatever it could choose, in the missions marked in (B,) bool.
+
+        No policy may do so; plans that end before the choices do can be followed this way.
+        """
+        robot = self.actor.clamp(min=0)
+        self._allowed[self._rows, robot] &= ~where[:, None]
         self._advance()
 
     def select(self, rows: Tensor) -> BatchMission:

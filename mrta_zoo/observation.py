@@ -33,15 +33,17 @@ To add a feature, widen a table here and fill its column in `Observer`; policies
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
-from gymnasium import spaces
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.mission import Mission
 from mrta_zoo.scenario import Scenario
+
+if TYPE_CHECKING:  # imported where spaces are made: networks are trained on machines without Gymnasium
+    from gymnasium import spaces
 
 TASK_FEATURES = ("x", "y", "deadline", "workload", "active", "assigned", "completed", "missed")
 ROBOT_FEATURES = ("x", "y", "capacity", "speed", "ready", "working", "is_ego")
@@ -91,6 +93,8 @@ class Scales:
 def observation_space(max_tasks: int, max_robots: int, num_actions: int | None = None) -> spaces.Dict:
     """The space of `Observer.observe`, for any scenario that fits. `num_actions` defaults to `max_tasks`."""
 
+    from gymnasium import spaces
+
     def box(*shape: int) -> spaces.Box:
         return spaces.Box(0.0, 1.0, shape, np.float32)
 
@@ -106,11 +110,15 @@ def observation_space(max_tasks: int, max_robots: int, num_actions: int | None =
 
 def flat_space(max_tasks: int, max_robots: int) -> spaces.Box:
     """The space of the flat form, which has no mask."""
+    from gymnasium import spaces
+
     return spaces.Box(0.0, 1.0, (_layout(max_tasks, max_robots)[-1],), np.float32)
 
 
 def state_space(max_tasks: int, max_robots: int) -> spaces.Box:
     """The space of `Observer.state`."""
+    from gymnasium import spaces
+
     size = _layout(max_tasks, max_robots)[-1] - max_robots - len(EGO_FEATURES)
     return spaces.Box(0.0, 1.0, (size,), np.float32)
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import pettingzoo
-
 ENVIRONMENTS = {
     "aec": ("mrta_zoo/mrta-v0", "mrta_zoo.mrta_v0:env"),
     "parallel": ("mrta_zoo/mrta-v0", "mrta_zoo.mrta_v0:parallel_env"),
@@ -11,7 +9,14 @@ ENVIRONMENTS = {
 
 
 def register() -> None:
-    """Register what is not registered yet: doing it twice would warn. Entry points are imported when made."""
+    """Register what is not registered yet: doing it twice would warn. Entry points are imported when made.
+
+    Without PettingZoo, as on a machine that only trains, there is nothing to do.
+    """
+    try:
+        import pettingzoo
+    except ImportError:
+        return
     if not hasattr(pettingzoo, "register"):
         return
     for form, (name, entry_point) in ENVIRONMENTS.items():

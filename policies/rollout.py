@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
+from typing import TypeVar
 
 import torch
 from torch import Tensor
@@ -10,6 +12,7 @@ from torch import Tensor
 from mrta_zoo.batch import BatchMission, ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
+from mrta_zoo.policies.capam.candidates import Candidates
 from mrta_zoo.policies.capam.inputs import Moments, Tasks, Watch
 from mrta_zoo.policies.sharing import Network
 from mrta_zoo.rules import MaskRule
@@ -17,10 +20,29 @@ from mrta_zoo.rules import MaskRule
 SEGMENT = 12
 """Decisions between two looks at which missions are over; those are dropped, so that no work is done for them."""
 
+T = TypeVar("T", Moments, Candidates)
+
 NOT_FINITE = (
     "the network gives probabilities that are not finite: its weights are spoilt (did training diverge?), or the "
     "scenario is beyond what float32 can hold"
 )
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """One decision of each of S · G missions.
+
+    Attributes:
+        moments: when it was taken, (S, G, …).
+        features: what the network made of them, or None.
+        actions: (S, G) int64 the tasks chosen.
+        live: (S, G) bool, false where there was nothing to decide.
+    """
+
+    moments: Moments
+    features: Candidates | None
+    actions: Tensor
+    live: Tensor
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +52,7 @@ class Segment:
     Attributes:
         scenarios: (S',) int64 which scenarios they belong to.
         moments: when they were taken, (S', Q, …).
-        features: the decision-time features then, (S', Q, N, F), or None.
+        features: what the network made of those moments, or None.
         actions: (S', Q) int64 the tasks chosen.
         live: (S', Q) bool, false where the mission was already over.
         sample: (Q,) int64 which of the G samples each belongs to.
@@ -38,10 +60,39 @@ class Segment:
 
     scenarios: Tensor
     moments: Moments
-    features: Tensor | None
+    features: Candidates | None
     actions: Tensor
     live: Tensor
     sample: Tensor
+
+    @classmethod
+    def of(cls, taken: Sequence[Taken], scenarios: Tensor) -> Segment:
+        """Decisions of the same missions, one after another."""
+        samples = taken[0].actions.shape[1]
+        features = [each.features for each in taken if each.features is not None]
+        return cls(
+            scenarios=scenarios,
+            moments=Moments(*(torch.cat([getattr(t.moments, f.name) for t in taken], 1) for f in fields(Moments))),
+            features=Candidates.cat(features) if features else None,
+            actions=torch.cat([each.actions for each in taken], 1),
+            live=torch.cat([each.live for each in taken], 1),
+            sample=torch.arange(samples, device=scenarios.device).repeat(len(taken)),
+        )
+
+
+    def lively(self) -> Segment:
+        """The same without the scenarios whose missions were all over."""
+        rows = self.live.any(1).nonzero().squeeze(1)
+        if len(rows) == len(self.live):
+            return self
+        return Segment(
+            scenarios=self.scenarios[rows],
+            moments=_rows_of(self.moments, rows),
+            features=None if self.features is None else _rows_of(self.features, rows),
+            actions=self.actions[rows],
+            live=self.live[rows],
+            sample=self.sample,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +165,7 @@ def roll_out(
             under_way = under_way[keep]
             mission = mission.select(_rows(keep, samples))
             encoding = encoding.select(keep)
-        log_prob = _run_segment(
+        log_prob = run_segment(
             network, encoding, mission, samples, generator, under_way, out.segments if keep_segments else None
         )
         # NaN would not only spoil the outcome: a mission that never takes a legal task would never end.
@@ -125,7 +176,7 @@ def roll_out(
     return out
 
 
-def _run_segment(
+def run_segment(
     network: Network,
     encoding: object,
     mission: BatchMission,
@@ -134,7 +185,21 @@ def _run_segment(
     under_way: Tensor,
     segments: list[Segment] | None,
 ) -> Tensor:
-    taken: list[tuple[Moments, Tensor | None, Tensor, Tensor]] = []
+    """Let the network take the next `SEGMENT` decisions of each mission.
+
+    Args:
+        network: decides.
+        encoding: of the scenarios, by `network`.
+        mission: B = S · G missions, which move on.
+        samples: G.
+        generator: of the draws; None takes the likeliest.
+        under_way: (S,) int64 what `Segment.scenarios` is to be.
+        segments: where the decisions go, or None.
+
+    Returns:
+        (B,) log-probability of the decisions together.
+    """
+    taken: list[Taken] = []
     log_prob = torch.zeros(len(mission.actor), device=mission.actor.device)
     watch = Watch(mission, samples)
     for _ in range(SEGMENT):
@@ -144,27 +209,23 @@ def _run_segment(
         if generator is None:
             action = log_probs.argmax(-1)
         else:
-            action = torch.multinomial(log_probs.exp().nan_to_num(1.0), 1, generator=generator).squeeze(1)
+            # Gumbel's trick: unlike torch.multinomial it never makes the CPU wait for the GPU.
+            noise = torch.empty_like(log_probs).exponential_(generator=generator)
+            action = (log_probs - noise.log()).argmax(-1)
         live = ~mission.done
         log_prob += torch.where(live, log_probs.gather(1, action[:, None]).squeeze(1), 0.0)
         if segments is not None:
             shape = (-1, samples)
-            taken.append((moments, features, action.unflatten(0, shape), live.unflatten(0, shape)))
+            taken.append(Taken(moments, features, action.unflatten(0, shape), live.unflatten(0, shape)))
         mission.step(action)
     if segments is not None:
-        moments = Moments(*(torch.cat([getattr(each[0], f.name) for each in taken], 1) for f in fields(Moments)))
-        features = None if taken[0][1] is None else torch.cat([each[1] for each in taken], 1)  # type: ignore[misc]
-        segments.append(
-            Segment(
-                scenarios=under_way,
-                moments=moments,
-                features=features,
-                actions=torch.cat([each[2] for each in taken], 1),
-                live=torch.cat([each[3] for each in taken], 1),
-                sample=torch.arange(samples, device=under_way.device).repeat(SEGMENT),
-            )
-        )
+        segments.append(Segment.of(taken, under_way))
     return log_prob
+
+
+def _rows_of(tables: T, rows: Tensor) -> T:
+    """Some of the scenarios in a dataclass of tensors."""
+    return type(tables)(*(getattr(tables, each.name)[rows] for each in fields(tables)))  # type: ignore[arg-type]
 
 
 def _rows(scenarios: Tensor, samples: int) -> Tensor:

@@ -9,6 +9,7 @@ import torch
 from torch import Tensor, nn
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.policies.capam.candidates import Candidates
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
 from mrta_zoo.policies.capam.network import AllocationNetwork, Encoding
@@ -42,11 +43,11 @@ class IndependentNetworks(nn.Module):
             tasks, tuple(cast(AllocationNetwork, network).encode(tasks) for network in self.robots)
         )
 
-    def features(self, encoding: IndependentEncoding, moments: Moments) -> Tensor | None:
+    def features(self, encoding: IndependentEncoding, moments: Moments) -> Candidates | None:
         """As `AllocationNetwork.features`: they hold no weights, so one robot's serve all."""
         return cast(AllocationNetwork, self.robots[0]).features(encoding.of_robot[0], moments)
 
-    def forward(self, encoding: IndependentEncoding, moments: Moments, features: Tensor | None = None) -> Tensor:
+    def forward(self, encoding: IndependentEncoding, moments: Moments, features: Candidates | None = None) -> Tensor:
         """As `AllocationNetwork.forward`, each decision by the network of the robot to act.
 
         Raises:

@@ -11,6 +11,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.sharing import Sharing
 from mrta_zoo.rules import MaskRule
+from mrta_zoo.train.precision import Precision
 
 BaselineName = Literal["samples", "rollout"]
 ObjectiveName = Literal["cost", "completion"]
@@ -25,11 +26,19 @@ class TrainConfig:
         network: architecture of the policy network.
         sharing: one network for all robots ("shared"), or one for each ("independent").
         generator: distribution of the training scenarios: "taptc" (fitted to the benchmark), "uniform" (paper
-            §IV-A), or "mixture" (half of each).
-        tasks: number of tasks of each scenario.
+            §IV-A), or "mixture" (both, see `mrta_zoo.train.distribution`).
+        tasks: numbers of tasks; each update draws one of them.
+        task_weights: how often each of `tasks` is drawn, relative to the others; empty for equally often.
+        reference_tasks: the number of tasks that the number of robots is given for; with other numbers of tasks it
+            grows in proportion.
         min_robots: fewest robots of a scenario.
         max_robots: most robots of a scenario.
         mask_rule: what a robot may choose.
+        imitation_updates: gradient steps that imitate plans of a strong search (`mrta_zoo.train.experts`) before REINFORCE
+            takes over; 0 for none.
+        imitation_plans: number of plans to imitate.
+        imitation_batch: plans a step.
+        imitation_learning_rate: Adam's step size at the start of the imitation; falls to a tenth along a cosine.
         objective: what to minimise: "cost" (Eq. 1 of the paper, divided by the number of tasks), or one minus the
             completion rate ("completion").
         baseline: what a mission's outcome is compared with: the mean of the other samples of its scenario
@@ -37,7 +46,7 @@ class TrainConfig:
             the present one is better ("rollout", the paper's).
         scenarios: scenarios per update.
         samples: missions sampled of each scenario; at least 2 for the "samples" baseline.
-        updates: number of gradient steps.
+        updates: number of gradient steps of REINFORCE.
         learning_rate: Adam's step size at the start.
         final_learning_rate: Adam's step size at the end, reached along a cosine.
         clip_norm: gradients are scaled down to at most this norm.
@@ -51,15 +60,22 @@ class TrainConfig:
         seed: of everything random.
         keep_checkpoints: how many of the latest checkpoints to keep.
         device: "cpu", "cuda", or "auto" (a GPU if there is one).
+        precision: of matrix products, "float32" or "bfloat16" (faster on a GPU).
     """
 
     network: NetworkConfig = field(default_factory=NetworkConfig)
     sharing: Sharing = "shared"
     generator: GeneratorName = "taptc"
-    tasks: int = 100
+    tasks: tuple[int, ...] = (100,)
+    task_weights: tuple[float, ...] = ()
+    reference_tasks: int = 100
     min_robots: int = 2
     max_robots: int = 7
     mask_rule: MaskRule = "feasible"
+    imitation_updates: int = 0
+    imitation_plans: int = 0
+    imitation_batch: int = 64
+    imitation_learning_rate: float = 1e-3
     objective: ObjectiveName = "completion"
     baseline: BaselineName = "samples"
     scenarios: int = 16
@@ -77,13 +93,31 @@ class TrainConfig:
     seed: int = 0
     keep_checkpoints: int = 3
     device: str = "auto"
+    precision: Precision = "float32"
+
+    @property
+    def total_updates(self) -> int:
+        """Gradient steps altogether."""
+        return self.imitation_updates + self.updates
 
     def __post_init__(self) -> None:
-        whole = ("tasks", "min_robots", "scenarios", "samples", "updates", "epoch", "keep_checkpoints")
+        whole = ("reference_tasks", "min_robots", "scenarios", "samples", "updates", "epoch", "keep_checkpoints", "imitation_batch")
         for name in whole:
             if getattr(self, name) < 1:
                 raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 1")
-        for name in ("learning_rate", "final_learning_rate", "clip_norm"):
+        if not self.tasks or min(self.tasks) < 1:
+            raise ConfigError(f"tasks is {self.tasks}; expected one or more whole numbers >= 1")
+        weights = self.task_weights
+        if weights and (len(weights) != len(self.tasks) or not all(0 < weight < math.inf for weight in weights)):
+            raise ConfigError(f"task_weights is {weights}; expected {len(self.tasks)} numbers > 0, one for each of tasks")
+        for name in ("imitation_plans", "imitation_updates"):
+            if getattr(self, name) < 0:
+                raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 0")
+        if self.imitation_updates and self.imitation_plans < self.imitation_batch:
+            raise ConfigError(
+                f"imitation_plans is {self.imitation_plans}; expected at least imitation_batch, {self.imitation_batch}"
+            )
+        for name in ("learning_rate", "imitation_learning_rate", "final_learning_rate", "clip_norm"):
             if not 0 < getattr(self, name) < math.inf:
                 raise ConfigError(f"{name} is {getattr(self, name)}; expected a number > 0")
         if self.max_robots < self.min_robots:
@@ -99,7 +133,7 @@ class TrainConfig:
             raise ConfigError("normalise compares the missions of an update; scenarios x samples is 1, expected >= 2")
         for name, names in (
             ("baseline", BaselineName), ("objective", ObjectiveName), ("generator", GeneratorName),
-            ("sharing", Sharing), ("mask_rule", MaskRule),
+            ("sharing", Sharing), ("mask_rule", MaskRule), ("precision", Precision),
         ):  # fmt: skip
             if getattr(self, name) not in get_args(names):
                 choices = ", ".join(get_args(names))

@@ -2,25 +2,38 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from mrta_zoo.generators import Mixture, ScenarioGenerator, TaptcGenerator, UniformGenerator
+from mrta_zoo.train.config import TrainConfig
 
 
-def training_generator(name: str, tasks: int, min_robots: int, max_robots: int) -> ScenarioGenerator:
-    """The generator of training and validation scenarios of one size.
+def draw_size(config: TrainConfig, rng: np.random.Generator) -> int:
+    """A number of tasks, drawn from `config.tasks`; nothing is drawn if there is no choice."""
+    if len(config.tasks) == 1:
+        return config.tasks[0]
+    bounds = np.cumsum(config.task_weights or [1.0] * len(config.tasks))
+    return config.tasks[int(np.searchsorted(bounds, rng.random() * bounds[-1]))]
 
-    Args:
-        name: "taptc" (fitted to the benchmark), "uniform" (paper §IV-A), or "mixture": 2/5 each of these two, and 1/5
-            TAPTC-like with robots of capacity 1 or 2 at random and deadlines from a wider range.
-        tasks: number of tasks.
-        min_robots: fewest robots.
-        max_robots: most robots.
+
+def team(config: TrainConfig, tasks: int) -> tuple[int, int]:
+    """Fewest and most robots for so many tasks: in proportion to what the configuration says for its reference size."""
+    scale = tasks / config.reference_tasks
+    return max(1, round(config.min_robots * scale)), max(1, round(config.max_robots * scale))
+
+
+def training_generator(config: TrainConfig, tasks: int) -> ScenarioGenerator:
+    """The generator of training and validation scenarios with so many tasks.
+
+    "taptc" is fitted to the benchmark, "uniform" is the paper's §IV-A, "mixture" is 2/5 each of these two, and 1/5
+    TAPTC-like with robots of capacity 1 or 2 at random and deadlines from a wider range.
     """
-    size, team = (tasks, tasks), (min_robots, max_robots)
-    taptc = TaptcGenerator(tasks=size, robots=team)
-    uniform = UniformGenerator(tasks=size, robots=team)
-    if name == "taptc":
+    size, robots = (tasks, tasks), team(config, tasks)
+    taptc = TaptcGenerator(tasks=size, robots=robots)
+    uniform = UniformGenerator(tasks=size, robots=robots)
+    if config.generator == "taptc":
         return taptc
-    if name == "uniform":
+    if config.generator == "uniform":
         return uniform
-    wide = TaptcGenerator(tasks=size, robots=team, capacity="random", latest=(210.0, 320.0), min_deadline=20.0)
+    wide = TaptcGenerator(tasks=size, robots=robots, capacity="random", latest=(210.0, 320.0), min_deadline=20.0)
     return Mixture((taptc, wide, uniform), (0.4, 0.2, 0.4))

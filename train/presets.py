@@ -38,11 +38,12 @@ PRESETS: dict[str, TrainConfig] = {
     ),
     "fast": FAST,
     # The same with decision-time features in the decoder: better, and slower to train.
-    "fast-plus": replace(FAST, network=NetworkConfig(decision_features=True), updates=4000),
+    "fast-plus": replace(FAST, network=NetworkConfig(decoder="candidates"), updates=4000),
     # Less than a minute on one CPU thread: to see that everything works.
     "smoke": TrainConfig(
         network=NetworkConfig(embedding=64),
-        tasks=40,
+        tasks=(40,),
+        reference_tasks=40,
         max_robots=4,
         scenarios=12,
         samples=8,

@@ -8,9 +8,11 @@ in a few large batches.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
@@ -20,15 +22,21 @@ from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import ScenarioGenerator
 from mrta_zoo.policies.capam.inputs import Tasks
-from mrta_zoo.policies.neural import load_policy
-from mrta_zoo.policies.rollout import Rollout, roll_out
+from mrta_zoo.policies.rollout import Segment, roll_out
 from mrta_zoo.policies.sharing import Network, build_network
-from mrta_zoo.policies.weights import load_state
 from mrta_zoo.train.baselines import Baseline, RolloutBaseline, SamplesBaseline
 from mrta_zoo.train.config import TrainConfig
-from mrta_zoo.train.distribution import training_generator
+from mrta_zoo.scenario import Scenario
+from mrta_zoo.train.distribution import draw_size, training_generator
+from mrta_zoo.train.experts import ExpertPlan
+from mrta_zoo.train.graphed_rollout import GraphedRollout
+from mrta_zoo.train.imitation import PlanBatch, follow, turned
 from mrta_zoo.train.objective import OBJECTIVES
+from mrta_zoo.train.precision import Precision, autocast
+from mrta_zoo.train.scenarios import Feed
 
+WARM_UP = 20
+"""Gradient steps over which the step size grows to what it should be."""
 VALIDATION = 1
 """Tag of the stream of random numbers that draws the validation scenarios; training draws from stream 0."""
 
@@ -65,24 +73,29 @@ class Reinforce:
     never stopped, with no generator state to be saved.
     """
 
-    def __init__(self, config: TrainConfig, generator: ScenarioGenerator | None = None) -> None:
+    def __init__(self, config: TrainConfig, generator: ScenarioGenerator | None = None, workers: int = 0, compiled: bool = False) -> None:
         """Start afresh.
 
         Args:
             config: the run.
             generator: draws the scenarios; by default, as `config.generator` says.
+            workers: processes that draw scenarios ahead of time.
+            compiled: whether to compile the decoder's layers: a minute at first, for steps half as long on a GPU.
 
         Raises:
             ConfigError: if `config.initial` names no policy, or one of another architecture.
         """
         self.config = config
         self.device = _device(config.device)
-        self.generator = generator or training_generator(config)
+        self.generator = generator
         self.objective = OBJECTIVES[config.objective]
         self.network: Network = build_network(config.network, config.sharing, config.max_robots, config.seed)
         if config.initial:
             self._start_from(config.initial)
         self.network.to(self.device)
+        if compiled:
+            for layer in getattr(self.network.decoder, "layers", ()):
+                layer.compile(dynamic=True)
         self.optimizer = torch.optim.Adam(self.network.parameters(), lr=config.learning_rate)
         self.baseline: Baseline = (
             RolloutBaseline(self.network, self.objective, config.mask_rule, config.significance)
@@ -92,13 +105,22 @@ class Reinforce:
         self.update = 0
         self.history: list[Validation] = []
         self._validation: ScenarioBatch | None = None
+        self._feed = Feed(config, generator, workers)
+        # An encoding of independent networks is not worth the care: they are for comparisons, not for speed.
+        graphs = self.device.type == "cuda" and config.sharing == "shared"
+        self._graphed = (
+            GraphedRollout(self.network, config.samples, config.mask_rule, config.precision, self.device)  # type: ignore[arg-type]
+            if graphs
+            else None
+        )
+        self._plans: dict[int, PlanBatch] = {}
 
     @property
     def validation_batch(self) -> ScenarioBatch:
         """The validation scenarios, the same all through the run."""
         if self._validation is None:
             rng = np.random.default_rng((self.config.seed, VALIDATION))
-            drawn = [self.generator(rng) for _ in range(self.config.validation_scenarios)]
+            drawn = [self._draw(rng) for _ in range(self.config.validation_scenarios)]
             self._validation = ScenarioBatch.of(drawn, self.device)
         return self._validation
 
@@ -113,31 +135,15 @@ class Reinforce:
         Raises:
             ConfigError: if training has diverged; the weights are then as before.
         """
-        config = self.config
-        rng = np.random.default_rng((config.seed, 0, self.update))
-        scenarios = ScenarioBatch.of([self.generator(rng) for _ in range(config.scenarios)], self.device)
-        sampler = torch.Generator(self.device).manual_seed(int(rng.integers(2**63)))
+        imitates = self.update < self.config.imitation_updates
+        if self.update == self.config.imitation_updates:
+            self.optimizer.state.clear()  # gradients of REINFORCE are of another size
         rate = self._learning_rate()
         for group in self.optimizer.param_groups:
             group["lr"] = rate
-
-        rollout = roll_out(
-            self.network,
-            scenarios,
-            samples=config.samples,
-            generator=sampler,
-            mask_rule=config.mask_rule,
-            keep_segments=True,
-        )
-        loss = self.objective(rollout, scenarios).unflatten(0, (-1, config.samples))
-        advantage = self.baseline.advantage(scenarios, loss).float()
-        if config.normalise:
-            advantage = advantage / (advantage.std() + 1e-6)
-
         self.optimizer.zero_grad(set_to_none=True)
-        surrogate = surrogate_loss(self.network, scenarios, rollout, advantage, config.entropy)
-        surrogate.backward()
-        norm = torch.nn.utils.clip_grad_norm_(self.network.parameters(), config.clip_norm)
+        loss, decisions = self._imitate() if imitates else self._reinforce()
+        norm = torch.nn.utils.clip_grad_norm_(self.network.parameters(), self.config.clip_norm)
         if not torch.isfinite(norm):
             raise ConfigError(
                 f"training diverged in update {self.update + 1}: the gradient is not finite; go on from an earlier "
@@ -145,25 +151,57 @@ class Reinforce:
             )
         self.optimizer.step()
         self.update += 1
-        return Update(
-            update=self.update,
-            loss=float(loss.mean()),
-            gradient_norm=float(norm),
-            learning_rate=rate,
-            decisions=sum(int(segment.live.sum()) for segment in rollout.segments),
-        )
+        return Update(self.update, loss, float(norm), rate, decisions)
+
+    def _reinforce(self) -> tuple[float, int]:
+        """Gradients of REINFORCE; the mean loss, and the number of decisions."""
+        config = self.config
+        drawn = self._feed.take(self.update)
+        scenarios = drawn.scenarios.to(self.device)
+        if self._graphed:
+            rollout = self._graphed.sample(scenarios, drawn.seed)
+        else:
+            with autocast(self.device, config.precision):
+                rollout = roll_out(
+                    self.network,
+                    scenarios,
+                    samples=config.samples,
+                    generator=torch.Generator(self.device).manual_seed(drawn.seed),
+                    mask_rule=config.mask_rule,
+                    keep_segments=True,
+                )
+        loss = self.objective(rollout, scenarios).unflatten(0, (-1, config.samples))
+        advantage = self.baseline.advantage(scenarios, loss).float()
+        if config.normalise:
+            advantage = advantage / (advantage.std() + 1e-6)
+        accumulate_gradients(self.network, scenarios, rollout.segments, advantage, config.entropy, config.precision)
+        return float(loss.mean()), sum(int(segment.live.sum()) for segment in rollout.segments)
+
+    def _imitate(self) -> tuple[float, int]:
+        """Gradients of the mean log-probability of the decisions behind some plans; its negative, and their number."""
+        config = self.config
+        rng = np.random.default_rng((config.seed, 0, self.update))
+        plans = self._plans[draw_size(config, rng)]
+        rows = torch.from_numpy(rng.integers(len(plans), size=config.imitation_batch)).to(self.device)
+        scenarios = turned(plans.scenarios.select(rows), int(rng.integers(8)))
+        following = self._graphed.follow if self._graphed else partial(follow, self.network)
+        segments = following(scenarios, plans.routes[rows])
+        decisions = sum(int(segment.live.sum()) for segment in segments)
+        wanted = torch.full((len(rows), 1), -len(rows) / decisions, device=self.device)
+        return accumulate_gradients(self.network, scenarios, segments, wanted, precision=config.precision), decisions
 
     def validate(self) -> Validation:
         """Greedy results now; gives the baseline its chance to change, and adds to the history."""
         scenarios = self.validation_batch
-        rollout = roll_out(self.network, scenarios, mask_rule=self.config.mask_rule)
+        with autocast(self.device, self.config.precision):
+            rollout = roll_out(self.network, scenarios, mask_rule=self.config.mask_rule)
         replaced = self.update > 0 and self.baseline.end_epoch(
             self.network, scenarios, self.objective(rollout, scenarios)
         )
         tasks = scenarios.task_exists.sum(1)
         validation = Validation(
             update=self.update,
-            episodes=self.update * self.config.scenarios * self.config.samples,
+            episodes=max(0, self.update - self.config.imitation_updates) * self.config.scenarios * self.config.samples,
             completion=float((rollout.completed / tasks).mean()),
             cost=float((rollout.cost / tasks).mean()),
             baseline_replaced=replaced,
@@ -175,12 +213,15 @@ class Reinforce:
         """Train to the end, validating before the first update (unless resumed), each epoch, and at the end."""
         if not self.history:
             yield self.validate()
-        while self.update < self.config.updates:
+        while self.update < self.config.total_updates:
             yield self.step()
-            if self.update % self.config.epoch == 0 or self.update == self.config.updates:
+            if self.update % self.config.epoch == 0 or self.update == self.config.total_updates:
                 yield self.validate()
 
     def _start_from(self, initial: str) -> None:
+        from mrta_zoo.policies.neural import load_policy
+        from mrta_zoo.policies.weights import load_state
+
         policy, config = load_policy(initial), self.config
         if (policy.info.network, policy.info.sharing) != (config.network, config.sharing):
             raise ConfigError(
@@ -189,35 +230,97 @@ class Reinforce:
             )
         load_state(self.network, dict(policy.network.state_dict()), Path(initial))
 
+    def set_plans(self, plans: Sequence[ExpertPlan]) -> None:
+        """Give the plans to imitate, which must be there before the first step if there is to be imitation.
+
+        Raises:
+            ConfigError: if there are none of some size.
+        """
+        for size in self.config.tasks:
+            of_size = [plan for plan in plans if plan.scenario.num_tasks == size]
+            if not of_size:
+                raise ConfigError(f"there are no plans with {size} tasks to imitate; make more of them")
+            self._plans[size] = PlanBatch(of_size, self.device)
+
+    def close(self) -> None:
+        """End the processes that draw scenarios."""
+        self._feed.close()
+
+    def _draw(self, rng: np.random.Generator) -> Scenario:
+        generator = self.generator or training_generator(self.config, draw_size(self.config, rng))
+        return generator(rng)
+
     def _learning_rate(self) -> float:
-        first, last = self.config.learning_rate, self.config.final_learning_rate
-        progress = self.update / self.config.updates
+        config = self.config
+        if self.update < config.imitation_updates:
+            first, last = config.imitation_learning_rate, config.imitation_learning_rate / 10
+            done, progress = self.update, self.update / config.imitation_updates
+        else:
+            first, last = config.learning_rate, config.final_learning_rate
+            done = self.update - config.imitation_updates
+            progress = done / config.updates
+        first *= min(1.0, (done + 1) / WARM_UP)
         return last + (first - last) * (1 + math.cos(math.pi * progress)) / 2
 
 
-def surrogate_loss(
-    network: Network, scenarios: ScenarioBatch, rollout: Rollout, advantage: Tensor, entropy: float = 0.0
-) -> Tensor:
-    """The scalar whose gradient is REINFORCE's: mean over missions of advantage · Σ log-probability.
+def accumulate_gradients(
+    network: Network,
+    scenarios: ScenarioBatch,
+    segments: Sequence[Segment],
+    advantage: Tensor,
+    entropy: float = 0.0,
+    precision: Precision = "float32",
+) -> float:
+    """Add to the parameters' gradients that of the mean over missions of advantage · Σ log-probability.
+
+    The encoder runs once; the decoder goes back through one segment after another, so that memory holds one of them.
 
     Args:
-        network: the policy, with gradients.
+        network: the policy.
         scenarios: the S scenarios.
-        rollout: of these scenarios, with its segments.
+        segments: decisions on them.
         advantage: (S, G) how much worse than expected each mission turned out.
         entropy: weight of the entropy bonus.
+        precision: of matrix products.
+
+    Returns:
+        The mean whose gradient it is.
     """
-    encoding = network.encode(Tasks.of_batch(scenarios))
-    total = advantage.new_zeros(())
-    for segment in rollout.segments:
-        log_probs = network(encoding.select(segment.scenarios), segment.moments, segment.features)
+    with autocast(scenarios.device, precision):
+        encoding = network.encode(Tasks.of_batch(scenarios))
+    leaves: list[tuple[Tensor, Tensor]] = []
+    cut = _cut(encoding, leaves)
+    total = torch.zeros((), device=scenarios.device)
+    for segment in segments:
+        with autocast(scenarios.device, precision):
+            log_probs = network(cut.select(segment.scenarios), segment.moments, segment.features)
         chosen = log_probs.gather(2, segment.actions[..., None]).squeeze(2)
         weight = advantage[segment.scenarios][:, segment.sample]
-        total = total + (weight * chosen).masked_fill(~segment.live, 0.0).sum()
+        # Where a plan takes a task that is no candidate there is nothing to learn.
+        live = segment.live & torch.isfinite(chosen)
+        loss = (weight * chosen.masked_fill(~live, 0.0)).sum()
         if entropy:
             negative = (log_probs.exp() * log_probs.masked_fill(torch.isinf(log_probs), 0.0)).sum(-1)
-            total = total + entropy * negative.masked_fill(~segment.live, 0.0).sum()
-    return total / advantage.numel()
+            loss = loss + entropy * negative.masked_fill(~live, 0.0).sum()
+        loss = loss / advantage.numel()
+        loss.backward()
+        total += loss.detach()
+    torch.autograd.backward([of for of, _ in leaves], [leaf.grad for _, leaf in leaves])
+    return float(total)
+
+
+def _cut(encoding: Any, leaves: list[tuple[Tensor, Tensor]]) -> Any:
+    """The same encoding with leaves in place of the tensors that gradients flow to, which are noted beside them."""
+    if isinstance(encoding, Tensor):
+        if not encoding.requires_grad:
+            return encoding
+        leaves.append((encoding, encoding.detach().requires_grad_()))
+        return leaves[-1][1]
+    if isinstance(encoding, tuple):
+        return tuple(_cut(each, leaves) for each in encoding)
+    if is_dataclass(encoding):
+        return type(encoding)(*(_cut(getattr(encoding, field.name), leaves) for field in fields(encoding)))
+    return encoding
 
 
 def _device(name: str) -> torch.device:

@@ -13,14 +13,18 @@ class NetworkConfig:
     """Architecture of one policy network. The defaults are the paper's (§III and §IV-C).
 
     Attributes:
-        encoder: "capsule" for CapAM, "attention" for the attention model (AM-RL), or one of your own (`ENCODERS`).
+        encoder: "capsule" for CapAM, "attention" for the attention model (AM-RL), "none" for tasks that know nothing of
+            each other, or one of your own (`ENCODERS`).
         embedding: h, length of embeddings and of the query; a multiple of `heads`.
         heads: number of attention heads, in the decoder and in the attention encoder.
         layers: L_e, number of encoder layers (1 in CapAM, 3 in AM).
         hops: K, degree of the capsule filters.
         moments: P, highest order of the capsules' moments.
-        decision_features: whether the decoder also sees decision-time features of each task, such as travel time
-            and slack (`mrta_zoo.policies.capam.decision_features`); ours, not the paper's.
+        decoder: "attention" for the paper's; "candidates" for CapAM+, which looks at what matters at the time of the
+            decision (`mrta_zoo.policies.capam.candidates`).
+        decision_layers: number of layers of the "candidates" decoder.
+        candidates: of the tasks that a robot may choose, how many that decoder looks at: the quickest.
+        peers: how many of its peers that decoder looks at: the nearest.
         node_features: what the encoder knows of each task, names in `mrta_zoo.policies.capam.node_features`. The
             paper's are x, y and deadline; it allows more, and here come workload and two features that relate
             deadlines and workloads to the size of the map.
@@ -33,7 +37,10 @@ class NetworkConfig:
     layers: int = 1
     hops: int = 2
     moments: int = 3
-    decision_features: bool = False
+    decoder: str = "attention"
+    decision_layers: int = 4
+    candidates: int = 40
+    peers: int = 8
     node_features: tuple[str, ...] = (
         "x",
         "y",
@@ -47,11 +54,14 @@ class NetworkConfig:
     def __post_init__(self) -> None:
         for name, least, most in (
             ("embedding", 1, 4096), ("heads", 1, 256), ("layers", 1, 64), ("moments", 1, 16), ("hops", 0, 16),
+            ("decision_layers", 0, 64), ("candidates", 1, 10_000), ("peers", 0, 10_000),
         ):  # fmt: skip
             if not least <= getattr(self, name) <= most:
                 raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number from {least} to {most}")
         if self.embedding % self.heads:
             raise ConfigError(f"embedding is {self.embedding}; expected a multiple of heads, {self.heads}")
+        if self.decoder not in ("attention", "candidates"):
+            raise ConfigError(f"decoder is {self.decoder!r}; expected attention or candidates")
         if not self.node_features:
             raise ConfigError("node_features is empty; expected at least one feature")
         if not 0 < self.tanh_clip < math.inf:

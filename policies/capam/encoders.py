@@ -10,6 +10,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.attention_encoder import AttentionEncoder
 from mrta_zoo.policies.capam.capsule_encoder import CapsuleEncoder
 from mrta_zoo.policies.capam.config import NetworkConfig
+from mrta_zoo.policies.capam.linear_encoder import LinearEncoder
 
 EncoderBuilder = Callable[[int, NetworkConfig], nn.Module]
 """Builds, for a number of node features, a module ``(nodes, exists, graph) -> embeddings``.
@@ -21,6 +22,7 @@ own but 0; `tests/policies/test_network.py` checks that, and more, of every enco
 ENCODERS: dict[str, EncoderBuilder] = {
     "capsule": lambda features, c: CapsuleEncoder(features, c.embedding, c.layers, c.hops, c.moments),
     "attention": lambda features, c: AttentionEncoder(features, c.embedding, c.layers, c.heads),
+    "none": lambda features, c: LinearEncoder(features, c.embedding),
 }
 """Encoders by name. To use one of your own, put it here under a new name and name it in `NetworkConfig.encoder`."""
 

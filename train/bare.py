@@ -1,0 +1,171 @@
+"""Training with torch and numpy alone, for a machine that has nothing else: ``python -m mrta_zoo.train.bare``.
+
+Reads a TrainConfig from JSON, writes the best weights by validation to an ``.npz`` file after each validation, and the
+validation history beside it. `pack` makes of it, at home, what `mrta-zoo train` would have left.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import time
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+
+from mrta_zoo.policies.capam.config import NetworkConfig
+from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.experts import read_plans
+from mrta_zoo.train.reinforce import Reinforce, Update, Validation
+
+
+def train(
+    config: TrainConfig,
+    out: Path,
+    plans: Path | None = None,
+    workers: int = 0,
+    seconds: float = math.inf,
+    compiled: bool = False,
+    fit: bool = False,
+    resume: bool = False,
+) -> None:
+    """Train, and print how it goes.
+
+    Args:
+        config: the run.
+        out: where the best weights (OUT.npz), the last state (OUT.last.npz) and the history (OUT.json) go.
+        plans: folder of the plans to imitate, if any.
+        workers: processes that draw scenarios.
+        seconds: after which training stops, be it at its end or not.
+        compiled: see `Reinforce`.
+        fit: once REINFORCE has begun, set the number of updates to what `seconds` has room for.
+        resume: go on from OUT.last.npz.
+    """
+    begun = time.perf_counter()
+    run = Reinforce(config, workers=workers, compiled=compiled)
+    spent = _resume(out, run) if resume else 0.0
+    if run.update < config.imitation_updates:
+        assert plans is not None, "there is imitation to be done; name a folder of plans"
+        run.set_plans(read_plans(config, plans, config.imitation_plans))
+    print(f"{out.name}: ready after {time.perf_counter() - begun:.1f} s on {run.device}", flush=True)
+    last = saved = session = time.perf_counter()
+    first_reinforce = None
+    updates: list[Update] = []
+    for event in run.run():
+        now = time.perf_counter()
+        if isinstance(event, Update):
+            updates.append(event)
+            into = event.update - config.imitation_updates
+            if fit and into == 15:
+                first_reinforce = now
+            if fit and into == 75 and first_reinforce is not None:
+                left = seconds - (now - begun) - 12
+                more = int(left / ((now - first_reinforce) / 60 * 1.08))
+                run.config = config = replace(config, updates=into + max(more, 1))
+                print(f"{out.name}: {config.updates} updates of REINFORCE", flush=True)
+        else:
+            mean = sum(update.loss for update in updates) / max(1, len(updates))
+            print(
+                f"{out.name} update {event.update} episodes {event.episodes:,} loss {mean:.4f} validation "
+                f"{100 * event.completion:.2f} % cost {event.cost:.4f} {now - begun:.0f} s "
+                f"({(now - last) / max(1, len(updates)):.3f} s/update)",
+                flush=True,
+            )
+            updates, last = [], now
+            if event is run.best:
+                _write(out, run, spent + now - session)
+            if now - saved > 60:
+                saved = now
+                _save(out, run, spent + now - session)
+        if now - begun > seconds:
+            break
+    if run.history[-1].update != run.update:
+        run.validate()
+        if run.history[-1] is run.best:
+            _write(out, run, spent + time.perf_counter() - session)
+    _save(out, run, spent + time.perf_counter() - session)
+    print(
+        f"{out.name} ends after update {run.update} at {100 * run.history[-1].completion:.2f} %, best "
+        f"{100 * run.best.completion:.2f} %",
+        flush=True,
+    )
+    run.close()
+
+
+def read_config(path: Path) -> TrainConfig:
+    """A TrainConfig from JSON; it validates itself."""
+    values: dict[str, Any] = json.loads(path.read_text())
+    network = values.pop("network")
+    lists = lambda d: {k: tuple(v) if isinstance(v, list) else v for k, v in d.items()}  # noqa: E731
+    return TrainConfig(network=NetworkConfig(**lists(network)), **lists(values))
+
+
+def _write(out: Path, run: Reinforce, seconds: float) -> None:
+    _store(out.with_name(out.name + ".npz"), run, seconds, _arrays(dict(run.network.state_dict())))
+
+
+def _save(out: Path, run: Reinforce, seconds: float) -> None:
+    arrays = _arrays(dict(run.network.state_dict()))
+    for name, parameter in run.network.named_parameters():
+        for key, value in run.optimizer.state.get(parameter, {}).items():
+            arrays[f"adam/{name}/{key}"] = value.detach().cpu().numpy()
+    _store(out.with_name(out.name + ".last.npz"), run, seconds, arrays)
+    history = [asdict(each) for each in run.history]
+    out.with_name(out.name + ".json").write_text(json.dumps({"config": asdict(run.config), "history": history}))
+
+
+def _arrays(tensors: dict[str, torch.Tensor]) -> dict[str, Any]:
+    return {name: value.detach().cpu().numpy() for name, value in tensors.items()}
+
+
+def _store(path: Path, run: Reinforce, seconds: float, arrays: dict[str, Any]) -> None:
+    about = {
+        "update": run.update, "seconds": round(seconds, 1), "torch": str(torch.__version__),
+        "device": torch.cuda.get_device_name() if run.device.type == "cuda" else "cpu",
+        "threads": torch.get_num_threads(), "history": [asdict(each) for each in run.history],
+    }  # fmt: skip
+    partial = path.with_name(path.name + ".partial.npz")
+    np.savez(partial, about=np.array(json.dumps(about)), **arrays)
+    os.replace(partial, path)
+
+
+def _resume(out: Path, run: Reinforce) -> float:
+    with np.load(out.with_name(out.name + ".last.npz"), allow_pickle=False) as file:
+        arrays = {name: file[name] for name in file.files}
+    about = json.loads(str(arrays.pop("about")))
+    state = {name: torch.from_numpy(array) for name, array in arrays.items() if not name.startswith("adam/")}
+    run.network.load_state_dict(state)
+    for name, parameter in run.network.named_parameters():
+        keys = [key for key in ("step", "exp_avg", "exp_avg_sq") if f"adam/{name}/{key}" in arrays]
+        if keys:
+            moments = {key: torch.from_numpy(arrays[f"adam/{name}/{key}"]) for key in keys}
+            run.optimizer.state[parameter] = {
+                key: value if key == "step" else value.to(parameter.device) for key, value in moments.items()
+            }
+    run.update = about["update"]
+    run.history = [Validation(**each) for each in about["history"]]
+    return float(about["seconds"])
+
+
+def main() -> None:
+    """Run from the command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("config", type=Path, help="TrainConfig as JSON")
+    parser.add_argument("out", type=Path, help="weights go to OUT.npz, the history to OUT.json")
+    parser.add_argument("--plans", type=Path, help="folder of plans to imitate")
+    parser.add_argument("--workers", type=int, default=0, help="processes that draw scenarios")
+    parser.add_argument("--seconds", type=float, default=math.inf, help="stop after so long")
+    parser.add_argument("--compiled", action="store_true", help="compile the decoder's layers")
+    parser.add_argument("--fit", action="store_true", help="as many updates as --seconds has room for")
+    parser.add_argument("--resume", action="store_true", help="go on from OUT.last.npz")
+    a = parser.parse_args()
+    train(read_config(a.config), a.out, a.plans, a.workers, a.seconds, a.compiled, a.fit, a.resume)
+
+
+if __name__ == "__main__":
+    main()

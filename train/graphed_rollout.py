@@ -1,0 +1,108 @@
+"""The decisions of many missions on a GPU, a segment at a launch; what they are is the same as without graphs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import torch
+from torch import Tensor
+
+from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.policies.capam.inputs import Tasks
+from mrta_zoo.policies.rollout import NOT_FINITE, Rollout, Segment, run_segment
+from mrta_zoo.policies.sharing import Network
+from mrta_zoo.rules import MaskRule
+from mrta_zoo.train.cuda_graph import Graph, cloned
+from mrta_zoo.train.imitation import follow_segment
+from mrta_zoo.train.precision import Precision, autocast
+
+
+@dataclass(slots=True)
+class _Missions:
+    encoding: Any
+    mission: BatchMission
+    rows: Tensor
+    routes: Tensor | None = None
+    position: Tensor | None = None
+
+
+class GraphedRollout:
+    """`roll_out` and `follow` with graphs, one for each size of scenarios.
+
+    Args:
+        network: decides; its weights may change, its shapes may not.
+        samples: missions sampled of each scenario.
+        mask_rule: what robots may choose.
+        precision: of matrix products.
+        device: the GPU.
+    """
+
+    def __init__(
+        self, network: Network, samples: int, mask_rule: MaskRule, precision: Precision, device: torch.device
+    ) -> None:
+        self._network, self._samples, self._mask_rule = network, samples, mask_rule
+        self._precision: Precision = precision
+        self._generator = torch.Generator(device)
+        self._graphs: dict[tuple[int, ...], Graph[_Missions, Any]] = {}
+
+    @torch.no_grad()
+    def sample(self, scenarios: ScenarioBatch, seed: int) -> Rollout:
+        """Sampled missions with their segments, as `roll_out` would give them."""
+        samples = self._samples
+        with autocast(scenarios.device, self._precision):
+            encoding = self._network.encode(Tasks.of_batch(scenarios))
+        mission = BatchMission(scenarios.repeat(samples), self._mask_rule)
+        rows = torch.arange(len(scenarios), device=scenarios.device)
+        key = (0, len(scenarios), scenarios.num_tasks, scenarios.num_robots)
+        graph = self._graph(key, self._decide, _Missions(encoding, mission, rows))
+        self._generator.manual_seed(seed)
+        segments, log_prob = [], torch.zeros(len(mission.actor), device=scenarios.device)
+        while True:
+            segment, gained = graph.run()
+            segments.append(cloned(segment.lively()))
+            log_prob += gained
+            mission = graph._state.mission
+            if bool(mission.done.all()):
+                break
+        if not torch.isfinite(log_prob).all():
+            raise ConfigError(NOT_FINITE)
+        return Rollout(mission.cost(), mission.completed(), log_prob, segments=segments)
+
+    @torch.no_grad()
+    def follow(self, scenarios: ScenarioBatch, routes: Tensor) -> list[Segment]:
+        """The decisions behind plans, as `imitation.follow` would give them."""
+        encoding = self._network.encode(Tasks.of_batch(scenarios))
+        mission = BatchMission(scenarios, "feasible")
+        rows = torch.arange(len(scenarios), device=scenarios.device)
+        position = torch.zeros(routes.shape[:2], dtype=torch.int64, device=routes.device)
+        key = (1, len(scenarios), scenarios.num_tasks, scenarios.num_robots, routes.shape[2])
+        graph = self._graph(key, self._follow, _Missions(encoding, mission, rows, routes, position))
+        segments = []
+        while True:
+            segments.append(cloned(graph.run().lively()))
+            if bool(graph._state.mission.done.all()):
+                return segments
+
+    def _graph(self, key: tuple[int, ...], function: Any, state: _Missions) -> Graph[_Missions, Any]:
+        if key not in self._graphs:
+            self._graphs[key] = Graph(function, state, self._generator)
+        self._graphs[key].load(state)
+        return self._graphs[key]
+
+    def _decide(self, state: _Missions) -> tuple[Segment, Tensor]:
+        segments: list[Segment] = []
+        # Without autocast's cache, which would keep weights as they were when the graph was recorded.
+        with autocast(state.rows.device, self._precision, cache=False):
+            log_prob = run_segment(
+                self._network, state.encoding, state.mission, self._samples, self._generator, state.rows, segments
+            )
+        return segments[0], log_prob
+
+    def _follow(self, state: _Missions) -> Segment:
+        assert state.routes is not None
+        assert state.position is not None
+        return follow_segment(
+            self._network, state.encoding, state.mission, state.routes, state.position, state.rows
+        )

@@ -1,0 +1,105 @@
+"""Learning from plans: the decisions behind them, as the simulator would have put them to the robots."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import torch
+from torch import Tensor
+
+from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.policies.capam.inputs import Tasks, Watch
+from mrta_zoo.policies.rollout import SEGMENT, Segment, Taken
+from mrta_zoo.policies.sharing import Network
+from mrta_zoo.train.experts import ExpertPlan
+
+
+def turned(scenarios: ScenarioBatch, symmetry: int) -> ScenarioBatch:
+    """The scenarios seen in one of the map's eight symmetries; only four of them where maps are not square.
+
+    Args:
+        scenarios: S scenarios.
+        symmetry: 0 to 7; bit 0 flips x, bit 1 flips y, bit 2 swaps the axes.
+    """
+    sides = scenarios.map_size[:, None]
+
+    def turn(places: Tensor) -> Tensor:
+        flip = torch.tensor([bool(symmetry & 1), bool(symmetry & 2)], device=places.device)
+        places = torch.where(flip, sides - places, places)
+        square = (sides[..., 0] == sides[..., 1])[..., None]
+        return torch.where(square & bool(symmetry & 4), places.flip(-1), places)
+
+    return replace(scenarios, task_xy=turn(scenarios.task_xy), robot_xy=turn(scenarios.robot_xy))
+
+
+class PlanBatch:
+    """Plans of scenarios of one size, on a device.
+
+    Attributes:
+        scenarios: the S scenarios.
+        routes: (S, M, T) int64 the tasks of each robot in order, then −1.
+    """
+
+    def __init__(self, plans: Sequence[ExpertPlan], device: torch.device) -> None:
+        self.scenarios = ScenarioBatch.of([plan.scenario for plan in plans], device)
+        longest = max(len(route) for plan in plans for route in plan.routes)
+        routes = torch.full((len(plans), self.scenarios.num_robots, longest + 1), -1, dtype=torch.int64)
+        for row, plan in zip(routes, plans, strict=True):
+            for robot, route in enumerate(plan.routes):
+                row[robot, : len(route)] = torch.tensor(route, dtype=torch.int64)
+        self.routes = routes.to(device)
+
+    def __len__(self) -> int:
+        return len(self.routes)
+
+
+@torch.no_grad()
+def follow(network: Network, scenarios: ScenarioBatch, routes: Tensor) -> list[Segment]:
+    """The decisions (G = 1) by which robots follow plans under the mask rule "feasible".
+
+    A robot at the end of its route retires, whatever it could still choose, which no label says.
+
+    Args:
+        network: says what it will want to see of each moment.
+        scenarios: S scenarios.
+        routes: (S, M, T) int64 the tasks of each robot in order, at least one −1 behind them; each finishes in time.
+    """
+    mission = BatchMission(scenarios, "feasible")
+    encoding = network.encode(Tasks.of_batch(scenarios))
+    rows = torch.arange(len(scenarios), device=scenarios.device)
+    position = torch.zeros(routes.shape[:2], dtype=torch.int64, device=routes.device)
+    segments: list[Segment] = []
+    while not bool(mission.done.all()):
+        segments.append(follow_segment(network, encoding, mission, routes, position, rows))
+    return segments
+
+
+def follow_segment(
+    network: Network, encoding: object, mission: BatchMission, routes: Tensor, position: Tensor, rows: Tensor
+) -> Segment:
+    """The next `SEGMENT` decisions of `follow`; `mission` and (S, M) `position`, where in its route each robot is, go on.
+
+    Args:
+        network: as for `follow`, as is `routes`.
+        encoding: of the scenarios, by `network`.
+        mission: S missions.
+        routes: their routes.
+        position: how many tasks of its route each robot has taken.
+        rows: (S,) int64 from 0 to S − 1.
+    """
+    taken, watch = [], Watch(mission)
+    for _ in range(SEGMENT):
+        robot = mission.actor.clamp(min=0)
+        task = routes[rows, robot, position[rows, robot]]
+        at_end = (task < 0) & ~mission.done
+        mission.retire(at_end)
+        live = ~mission.done & ~at_end  # where a robot has retired, the next one has its turn next time
+        moments = watch.moments()
+        task = torch.where(live, task, 0)
+        features = network.features(encoding, moments)  # type: ignore[arg-type]
+        taken.append(Taken(moments, features, task[:, None], live[:, None]))
+        robot = mission.actor.clamp(min=0)
+        position[rows, robot] += live.long()
+        mission.step(task, where=live)
+    return Segment.of(taken, rows)
