@@ -114,7 +114,6 @@ class Rollout:
     segments: list[Segment] = field(default_factory=list)
 
 
-@torch.no_grad()
 def roll_out(
     network: Network,
     scenarios: ScenarioBatch,
@@ -139,8 +138,21 @@ def roll_out(
     Raises:
         ConfigError: if the network gives probabilities that are not finite.
     """
-    tasks = Tasks.of_batch(scenarios)
-    encoding = network.encode(tasks)
+    # Inference mode is quicker, but what it makes can't take part in learning.
+    with torch.no_grad() if keep_segments else torch.inference_mode():
+        return _roll_out(network, scenarios, samples, generator, mask_rule, keep_plans, keep_segments)
+
+
+def _roll_out(
+    network: Network,
+    scenarios: ScenarioBatch,
+    samples: int,
+    generator: torch.Generator | None,
+    mask_rule: MaskRule,
+    keep_plans: bool,
+    keep_segments: bool,
+) -> Rollout:
+    encoding = network.encode(Tasks.of_batch(scenarios))
     mission = BatchMission(scenarios.repeat(samples), mask_rule)
     total, device = len(scenarios) * samples, scenarios.device
     out = Rollout(

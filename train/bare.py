@@ -1,7 +1,13 @@
 """Training with torch and numpy alone, for a machine that has nothing else: ``python -m mrta_zoo.train.bare``.
 
-Reads a TrainConfig from JSON, writes the best weights by validation to an ``.npz`` file after each validation, and the
-validation history beside it. `pack` makes of it, at home, what `mrta-zoo train` would have left.
+At home, ``mrta-zoo train --preset capam-plus --out runs/plus --prepare`` writes the configuration and the plans to
+imitate. Carry that folder and the sources to the other machine, with the folders ``policies``, ``train`` and ``eval``
+inside ``mrta_zoo``, as they are when installed, and there::
+
+    python -m mrta_zoo.train.bare runs/plus/config.json runs/plus/bare --plans runs/plus/plans
+
+It leaves the best weights by validation in ``bare.npz``, what it needs to go on in ``bare.last.npz``, the history in
+``bare.json``. Bring them back, and ``mrta-zoo train --out runs/plus --collect`` makes the run's policy of them.
 """
 
 from __future__ import annotations
@@ -21,7 +27,7 @@ import torch
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.experts import read_plans
-from mrta_zoo.train.reinforce import Reinforce, Update, Validation
+from mrta_zoo.train.reinforce import Reinforce, RunOptions, Update, Validation
 
 
 def train(
@@ -47,7 +53,7 @@ def train(
         resume: go on from OUT.last.npz.
     """
     begun = time.perf_counter()
-    run = Reinforce(config, workers=workers, compiled=compiled)
+    run = Reinforce(config, options=RunOptions(workers, compiled))
     spent = _resume(out, run) if resume else 0.0
     if run.update < config.imitation_updates:
         assert plans is not None, "there is imitation to be done; name a folder of plans"
@@ -100,6 +106,7 @@ def train(
 def read_config(path: Path) -> TrainConfig:
     """A TrainConfig from JSON; it validates itself."""
     values: dict[str, Any] = json.loads(path.read_text())
+    values = values.get("config", values)  # a history written by `train` holds it, too
     network = values.pop("network")
     lists = lambda d: {k: tuple(v) if isinstance(v, list) else v for k, v in d.items()}  # noqa: E731
     return TrainConfig(network=NetworkConfig(**lists(network)), **lists(values))
@@ -163,7 +170,10 @@ def main() -> None:
     parser.add_argument("--compiled", action="store_true", help="compile the decoder's layers")
     parser.add_argument("--fit", action="store_true", help="as many updates as --seconds has room for")
     parser.add_argument("--resume", action="store_true", help="go on from OUT.last.npz")
+    parser.add_argument("--threads", type=int, default=1, help="CPU threads of torch; 0 leaves the choice to it")
     a = parser.parse_args()
+    if a.threads:
+        torch.set_num_threads(a.threads)
     train(read_config(a.config), a.out, a.plans, a.workers, a.seconds, a.compiled, a.fit, a.resume)
 
 

@@ -8,6 +8,7 @@ A run's folder holds::
         optimizer.safetensors          Adam's moments
         baseline.safetensors           the rollout baseline's weights, if there is one
         state.json                     update, time spent, validation history
+    plans/*.npz                        the plans to imitate, if any
     policy.safetensors, policy.json    the policy with the best validation so far
     history.csv                        the validation history, for people and plots
 """
@@ -34,7 +35,7 @@ from mrta_zoo.policies.weights import (
 )
 from mrta_zoo.train.baselines import RolloutBaseline
 from mrta_zoo.train.config import TrainConfig
-from mrta_zoo.train.reinforce import Reinforce, Validation
+from mrta_zoo.train.reinforce import Reinforce, RunOptions, Validation
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +48,7 @@ class RunState:
     history: list[Validation]
 
 
-def start(folder: Path, config: TrainConfig) -> Reinforce:
+def start(folder: Path, config: TrainConfig, options: RunOptions | None = None) -> Reinforce:
     """Begin a run in a new or empty folder.
 
     Raises:
@@ -55,7 +56,7 @@ def start(folder: Path, config: TrainConfig) -> Reinforce:
     """
     if os.path.lexists(folder / "config.json") or os.path.lexists(folder / "checkpoints"):
         raise ConfigError(f"{folder} already holds a run; go on with it (--resume), or choose another folder")
-    run = Reinforce(config)  # before anything is written: it may refuse the configuration
+    run = Reinforce(config, options=options)  # before anything is written: it may refuse the configuration
     try:
         (folder / "checkpoints").mkdir(parents=True, exist_ok=True)
         write_json(folder / "config.json", config)
@@ -64,7 +65,7 @@ def start(folder: Path, config: TrainConfig) -> Reinforce:
     return run
 
 
-def resume(folder: Path) -> tuple[Reinforce, float]:
+def resume(folder: Path, options: RunOptions | None = None) -> tuple[Reinforce, float]:
     """The run in `folder` as of its last checkpoint, and the seconds spent so far.
 
     Raises:
@@ -73,8 +74,8 @@ def resume(folder: Path) -> tuple[Reinforce, float]:
     config = saved_config(folder)
     numbers = _checkpoints(folder)
     if not numbers:
-        return Reinforce(config), 0.0
-    run = Reinforce(replace(config, initial=""))  # the checkpoint holds the weights; the policy may be gone by now
+        return Reinforce(config, options=options), 0.0
+    run = Reinforce(replace(config, initial=""), options=options)  # the checkpoint holds the weights; the policy may be gone by now
     run.config = config
     at = folder / "checkpoints" / _name(numbers[-1])
     state = read_json(at / "state.json", RunState)
@@ -83,7 +84,7 @@ def resume(folder: Path) -> tuple[Reinforce, float]:
     if isinstance(run.baseline, RolloutBaseline):
         path = at / "baseline.safetensors"
         load_state(run.baseline.network, read_tensors(path), path)
-    if state.update != numbers[-1] or state.update > config.updates:
+    if state.update != numbers[-1] or state.update > config.total_updates:
         raise ConfigError(f"{at / 'state.json'}: update is {state.update}; expected {numbers[-1]}, as the folder says")
     run.update = state.update
     run.history = list(state.history)

@@ -41,6 +41,11 @@ def expert_scenario(config: TrainConfig, number: int) -> Scenario:
     return training_generator(config, draw_size(config, rng))(rng)
 
 
+def shard_path(folder: Path, first: int) -> Path:
+    """The file of the plans from number `first` on."""
+    return folder / f"{first:07d}.npz"
+
+
 def make_shard(config: TrainConfig, first: int, folder: Path) -> Path:
     """Plan `SHARD` scenarios, from number `first` on, and write them to a file, atomically. Needs the extra `solvers`."""
     from mrta_zoo.io.atomic import replacing
@@ -48,7 +53,7 @@ def make_shard(config: TrainConfig, first: int, folder: Path) -> Path:
 
     solver = EilsSolver(config=EilsConfig(iterations_a_task=ITERATIONS_A_TASK))
     routes = [solver.solve(expert_scenario(config, number)).routes for number in range(first, first + SHARD)]
-    path = folder / f"{first:07d}.npz"
+    path = shard_path(folder, first)
     with replacing(path) as partial, partial.open("wb") as file:
         np.savez_compressed(
             file,

@@ -66,6 +66,19 @@ class Validation:
     baseline_replaced: bool
 
 
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """What changes how long a run takes, but not what comes of it, up to rounding.
+
+    Attributes:
+        workers: processes that draw scenarios ahead of time, on a GPU; a CPU has nothing to spare.
+        compiled: whether to compile the layers of the candidate decoder.
+    """
+
+    workers: int = 0
+    compiled: bool = False
+
+
 class Reinforce:
     """A training run in memory. `step` and `validate` move it on; `train.checkpoint` saves and restores it.
 
@@ -73,18 +86,20 @@ class Reinforce:
     never stopped, with no generator state to be saved.
     """
 
-    def __init__(self, config: TrainConfig, generator: ScenarioGenerator | None = None, workers: int = 0, compiled: bool = False) -> None:
+    def __init__(
+        self, config: TrainConfig, generator: ScenarioGenerator | None = None, options: RunOptions | None = None
+    ) -> None:
         """Start afresh.
 
         Args:
             config: the run.
             generator: draws the scenarios; by default, as `config.generator` says.
-            workers: processes that draw scenarios ahead of time.
-            compiled: whether to compile the decoder's layers: a minute at first, for steps half as long on a GPU.
+            options: what makes it quicker.
 
         Raises:
             ConfigError: if `config.initial` names no policy, or one of another architecture.
         """
+        options = options or RunOptions()
         self.config = config
         self.device = _device(config.device)
         self.generator = generator
@@ -93,7 +108,7 @@ class Reinforce:
         if config.initial:
             self._start_from(config.initial)
         self.network.to(self.device)
-        if compiled:
+        if options.compiled:
             for layer in getattr(self.network.decoder, "layers", ()):
                 layer.compile(dynamic=True)
         self.optimizer = torch.optim.Adam(self.network.parameters(), lr=config.learning_rate)
@@ -105,7 +120,7 @@ class Reinforce:
         self.update = 0
         self.history: list[Validation] = []
         self._validation: ScenarioBatch | None = None
-        self._feed = Feed(config, generator, workers)
+        self._feed = Feed(config, generator, options.workers if self.device.type == "cuda" else 0)
         # An encoding of independent networks is not worth the care: they are for comparisons, not for speed.
         graphs = self.device.type == "cuda" and config.sharing == "shared"
         self._graphed = (
@@ -125,6 +140,11 @@ class Reinforce:
         return self._validation
 
     @property
+    def imitates(self) -> bool:
+        """Whether there are steps of imitation still to come."""
+        return self.update < self.config.imitation_updates
+
+    @property
     def best(self) -> Validation:
         """The best validation so far: by completion, then cost, then the earliest. There must have been one."""
         return max(self.history, key=lambda each: (each.completion, -each.cost))
@@ -135,14 +155,13 @@ class Reinforce:
         Raises:
             ConfigError: if training has diverged; the weights are then as before.
         """
-        imitates = self.update < self.config.imitation_updates
         if self.update == self.config.imitation_updates:
             self.optimizer.state.clear()  # gradients of REINFORCE are of another size
         rate = self._learning_rate()
         for group in self.optimizer.param_groups:
             group["lr"] = rate
         self.optimizer.zero_grad(set_to_none=True)
-        loss, decisions = self._imitate() if imitates else self._reinforce()
+        loss, decisions = self._imitate() if self.imitates else self._reinforce()
         norm = torch.nn.utils.clip_grad_norm_(self.network.parameters(), self.config.clip_norm)
         if not torch.isfinite(norm):
             raise ConfigError(

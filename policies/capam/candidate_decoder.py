@@ -45,7 +45,7 @@ class CandidateDecoder(nn.Module):
         """Score every candidate.
 
         Args:
-            embeddings: (S, N, h) of the tasks, from the encoder.
+            embeddings: (S, N, h) of the tasks, from the encoder and then `encoded`.
             candidates: of G decisions in each scenario.
 
         Returns:
@@ -53,7 +53,7 @@ class CandidateDecoder(nn.Module):
         """
         s, g, k = candidates.index.shape
         at = candidates.index.reshape(s, g * k, 1).expand(-1, -1, embeddings.shape[-1])
-        known = self.encoded(embeddings).gather(1, at).view(s, g, k, -1)
+        known = embeddings.gather(1, at).view(s, g, k, -1)
         mission = self.mission(candidates.mission)[:, :, None]
         task = self.task(candidates.task) + known + mission
         robot = self.robot(candidates.robot) + mission

@@ -71,7 +71,7 @@ class AllocationNetwork(nn.Module):
         )
         if isinstance(self.decoder, AttentionDecoder):
             return Encoding(tasks, keys=self.decoder.keys(embeddings))
-        return Encoding(tasks, embeddings=embeddings, neighbourhood=Neighbourhood.of(tasks))
+        return Encoding(tasks, embeddings=self.decoder.encoded(embeddings), neighbourhood=Neighbourhood.of(tasks))
 
     def features(self, encoding: Encoding, moments: Moments) -> Candidates | None:
         """What `forward` needs to know of these moments besides, or None; no gradients flow through it."""

@@ -1,0 +1,59 @@
+"""Making the plans to imitate, in as many processes as there are cores to spare, with progress."""
+
+from __future__ import annotations
+
+import multiprocessing
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.extras import require
+from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.experts import SHARD, ExpertPlan, make_shard, read_plans, shard_path
+
+
+def make_plans(config: TrainConfig, folder: Path, workers: int = 1, console: Console | None = None) -> list[ExpertPlan]:
+    """The plans that a run imitates, read from a folder; those that are missing there are made first.
+
+    Args:
+        config: the run.
+        folder: where the files of plans are, or go. What is there already is kept, so that this can be interrupted.
+        workers: processes.
+        console: where to show progress; standard error by default.
+
+    Raises:
+        ConfigError: if a file is damaged or belongs to another run, or none can be written.
+        MissingExtraError: if plans are to be made and the extra "solvers" is missing.
+    """
+    have = read_plans(config, folder, config.imitation_plans)
+    if len(have) >= config.imitation_plans:
+        return have
+    require("solvers", "making plans to imitate")
+    console = console or Console(stderr=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ConfigError(f"{folder}: can't write plans there ({error.strerror})") from None
+    missing = -(-(config.imitation_plans - len(have)) // SHARD)
+    taken = (number for number in range(0, 10**7, SHARD) if not shard_path(folder, number).exists())
+    todo = [next(taken) for _ in range(missing)]
+    columns = (
+        TextColumn("plans {task.completed}/{task.total}"), BarColumn(bar_width=None), TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )  # fmt: skip
+    console.print(f"{folder}: makes {missing * SHARD:,} plans to imitate", highlight=False, soft_wrap=True)
+    with (
+        Progress(*columns, console=console, disable=not console.is_terminal) as progress,
+        ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool,
+    ):
+        bar = progress.add_task("", total=missing * SHARD)
+        try:
+            for _ in as_completed([pool.submit(make_shard, config, first, folder) for first in todo]):
+                progress.advance(bar, SHARD)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return read_plans(config, folder, config.imitation_plans)
