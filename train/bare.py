@@ -1,7 +1,7 @@
 """Training with torch and numpy alone, for a machine that has nothing else: ``python -m mrta_zoo.train.bare``.
 
 Reads a TrainConfig from JSON, writes the best weights by validation to an ``.npz`` file after each validation, and the
-validation history beside it. `pack` makes of it, at home, what `mrta-zoo train` would have left.
+validation history beside it.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 import torch
 
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.experts import read_plans
@@ -50,7 +51,8 @@ def train(
     run = Reinforce(config, workers=workers, compiled=compiled)
     spent = _resume(out, run) if resume else 0.0
     if run.update < config.imitation_updates:
-        assert plans is not None, "there is imitation to be done; name a folder of plans"
+        if plans is None:
+            raise ConfigError("there is imitation to be done; name a folder of plans (--plans)")
         run.set_plans(read_plans(config, plans, config.imitation_plans))
     print(f"{out.name}: ready after {time.perf_counter() - begun:.1f} s on {run.device}", flush=True)
     last = saved = session = time.perf_counter()
@@ -98,11 +100,22 @@ def train(
 
 
 def read_config(path: Path) -> TrainConfig:
-    """A TrainConfig from JSON; it validates itself."""
-    values: dict[str, Any] = json.loads(path.read_text())
-    network = values.pop("network")
-    lists = lambda d: {k: tuple(v) if isinstance(v, list) else v for k, v in d.items()}  # noqa: E731
-    return TrainConfig(network=NetworkConfig(**lists(network)), **lists(values))
+    """A TrainConfig from JSON, as `dataclasses.asdict` gives it.
+
+    Raises:
+        ConfigError: if the file is missing or no JSON, has an unknown field, or a value is out of range.
+    """
+    try:
+        values: dict[str, Any] = json.loads(path.read_text())
+        network = NetworkConfig(**_with_tuples(values.pop("network", {})))
+        return TrainConfig(network=network, **_with_tuples(values))
+    except (OSError, ValueError, TypeError, AttributeError) as error:
+        raise ConfigError(f"{path}: not a configuration ({error})") from None
+
+
+def _with_tuples(values: dict[str, Any]) -> dict[str, Any]:
+    """JSON has only lists where the dataclasses have tuples."""
+    return {name: tuple(value) if isinstance(value, list) else value for name, value in values.items()}
 
 
 def _write(out: Path, run: Reinforce, seconds: float) -> None:

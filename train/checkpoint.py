@@ -34,6 +34,7 @@ from mrta_zoo.policies.weights import (
 )
 from mrta_zoo.train.baselines import RolloutBaseline
 from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.distribution import most_robots
 from mrta_zoo.train.reinforce import Reinforce, Validation
 
 
@@ -83,7 +84,7 @@ def resume(folder: Path) -> tuple[Reinforce, float]:
     if isinstance(run.baseline, RolloutBaseline):
         path = at / "baseline.safetensors"
         load_state(run.baseline.network, read_tensors(path), path)
-    if state.update != numbers[-1] or state.update > config.updates:
+    if state.update != numbers[-1] or state.update > config.total_updates:
         raise ConfigError(f"{at / 'state.json'}: update is {state.update}; expected {numbers[-1]}, as the folder says")
     run.update = state.update
     run.history = list(state.history)
@@ -140,7 +141,7 @@ def policy_info(run: Reinforce, seconds: float) -> PolicyInfo:
     return PolicyInfo(
         network=config.network,
         sharing=config.sharing,
-        robots=config.max_robots,
+        robots=most_robots(config),
         mask_rule=config.mask_rule,
         trained=trained,
     )
