@@ -79,7 +79,6 @@ class Segment:
             sample=torch.arange(samples, device=scenarios.device).repeat(len(taken)),
         )
 
-
     def lively(self) -> Segment:
         """The same without the scenarios whose missions were all over."""
         rows = self.live.any(1).nonzero().squeeze(1)
@@ -237,7 +236,7 @@ def run_segment(
 
 def _rows_of(tables: T, rows: Tensor) -> T:
     """Some of the scenarios in a dataclass of tensors."""
-    return type(tables)(*(getattr(tables, each.name)[rows] for each in fields(tables)))  # type: ignore[arg-type]
+    return type(tables)(*(getattr(tables, each.name)[rows] for each in fields(tables)))
 
 
 def _rows(scenarios: Tensor, samples: int) -> Tensor:

@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 import torch
 
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.experts import read_plans
@@ -56,7 +57,8 @@ def train(
     run = Reinforce(config, options=RunOptions(workers, compiled))
     spent = _resume(out, run) if resume else 0.0
     if run.update < config.imitation_updates:
-        assert plans is not None, "there is imitation to be done; name a folder of plans"
+        if plans is None:
+            raise ConfigError("there is imitation to be done; name a folder of plans (--plans)")
         run.set_plans(read_plans(config, plans, config.imitation_plans))
     print(f"{out.name}: ready after {time.perf_counter() - begun:.1f} s on {run.device}", flush=True)
     last = saved = session = time.perf_counter()
@@ -104,12 +106,23 @@ def train(
 
 
 def read_config(path: Path) -> TrainConfig:
-    """A TrainConfig from JSON; it validates itself."""
-    values: dict[str, Any] = json.loads(path.read_text())
-    values = values.get("config", values)  # a history written by `train` holds it, too
-    network = values.pop("network")
-    lists = lambda d: {k: tuple(v) if isinstance(v, list) else v for k, v in d.items()}  # noqa: E731
-    return TrainConfig(network=NetworkConfig(**lists(network)), **lists(values))
+    """A TrainConfig from JSON, as `dataclasses.asdict` gives it.
+
+    Raises:
+        ConfigError: if the file is missing or no JSON, has an unknown field, or a value is out of range.
+    """
+    try:
+        values: dict[str, Any] = json.loads(path.read_text())
+        values = values.get("config", values)  # the history that `train` leaves holds it, too
+        network = NetworkConfig(**_with_tuples(values.pop("network", {})))
+        return TrainConfig(network=network, **_with_tuples(values))
+    except (OSError, ValueError, TypeError, AttributeError) as error:
+        raise ConfigError(f"{path}: not a configuration ({error})") from None
+
+
+def _with_tuples(values: dict[str, Any]) -> dict[str, Any]:
+    """JSON has only lists where the dataclasses have tuples."""
+    return {name: tuple(value) if isinstance(value, list) else value for name, value in values.items()}
 
 
 def _write(out: Path, run: Reinforce, seconds: float) -> None:

@@ -35,6 +35,7 @@ from mrta_zoo.policies.weights import (
 )
 from mrta_zoo.train.baselines import RolloutBaseline
 from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.distribution import most_robots
 from mrta_zoo.train.reinforce import Reinforce, RunOptions, Validation
 
 
@@ -75,7 +76,9 @@ def resume(folder: Path, options: RunOptions | None = None) -> tuple[Reinforce, 
     numbers = _checkpoints(folder)
     if not numbers:
         return Reinforce(config, options=options), 0.0
-    run = Reinforce(replace(config, initial=""), options=options)  # the checkpoint holds the weights; the policy may be gone by now
+    run = Reinforce(
+        replace(config, initial=""), options=options
+    )  # the checkpoint holds the weights; the policy may be gone by now
     run.config = config
     at = folder / "checkpoints" / _name(numbers[-1])
     state = read_json(at / "state.json", RunState)
@@ -141,7 +144,7 @@ def policy_info(run: Reinforce, seconds: float) -> PolicyInfo:
     return PolicyInfo(
         network=config.network,
         sharing=config.sharing,
-        robots=config.max_robots,
+        robots=most_robots(config),
         mask_rule=config.mask_rule,
         trained=trained,
     )

@@ -17,8 +17,8 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 from mrta_zoo.bounds import MAX_THREADS, check_threads
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.train import checkpoint
-from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.collect import collect
+from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.plans import make_plans
 from mrta_zoo.train.presets import PRESETS
 from mrta_zoo.train.reinforce import Reinforce, RunOptions, Update

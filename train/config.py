@@ -34,8 +34,8 @@ class TrainConfig:
         min_robots: fewest robots of a scenario.
         max_robots: most robots of a scenario.
         mask_rule: what a robot may choose.
-        imitation_updates: gradient steps that imitate plans of a strong search (`mrta_zoo.train.experts`) before REINFORCE
-            takes over; 0 for none.
+        imitation_updates: gradient steps that imitate plans of a strong search (`mrta_zoo.train.experts`) before
+            REINFORCE takes over; 0 for none.
         imitation_plans: number of plans to imitate.
         imitation_batch: plans a step.
         imitation_learning_rate: Adam's step size at the start of the imitation; falls to a tenth along a cosine.
@@ -101,7 +101,16 @@ class TrainConfig:
         return self.imitation_updates + self.updates
 
     def __post_init__(self) -> None:
-        whole = ("reference_tasks", "min_robots", "scenarios", "samples", "updates", "epoch", "keep_checkpoints", "imitation_batch")
+        whole = (
+            "reference_tasks",
+            "min_robots",
+            "scenarios",
+            "samples",
+            "updates",
+            "epoch",
+            "keep_checkpoints",
+            "imitation_batch",
+        )
         for name in whole:
             if getattr(self, name) < 1:
                 raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 1")
@@ -109,7 +118,9 @@ class TrainConfig:
             raise ConfigError(f"tasks is {self.tasks}; expected one or more whole numbers >= 1")
         weights = self.task_weights
         if weights and (len(weights) != len(self.tasks) or not all(0 < weight < math.inf for weight in weights)):
-            raise ConfigError(f"task_weights is {weights}; expected {len(self.tasks)} numbers > 0, one for each of tasks")
+            raise ConfigError(
+                f"task_weights is {weights}; expected {len(self.tasks)} numbers > 0, one for each of tasks"
+            )
         for name in ("imitation_plans", "imitation_updates"):
             if getattr(self, name) < 0:
                 raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 0")

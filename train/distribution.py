@@ -22,6 +22,11 @@ def team(config: TrainConfig, tasks: int) -> tuple[int, int]:
     return max(1, round(config.min_robots * scale)), max(1, round(config.max_robots * scale))
 
 
+def most_robots(config: TrainConfig) -> int:
+    """The most robots that any scenario of the run has, but at least `config.max_robots`: generators may be given."""
+    return max(config.max_robots, *(team(config, tasks)[1] for tasks in config.tasks))
+
+
 def training_generator(config: TrainConfig, tasks: int) -> ScenarioGenerator:
     """The generator of training and validation scenarios with so many tasks.
 

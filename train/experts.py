@@ -5,6 +5,8 @@ A plan is stored as its routes alone: its scenario follows from the seed and the
 
 from __future__ import annotations
 
+import zipfile
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,10 +14,12 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from mrta_zoo.errors import ConfigError
+from mrta_zoo.errors import ConfigError, PlanError
+from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, training_generator
+from mrta_zoo.verify import verify
 
 STREAM = 2
 """Tag of the stream of random numbers that draws the scenarios of the plans; see `reinforce.VALIDATION`."""
@@ -23,6 +27,9 @@ ITERATIONS_A_TASK = 24
 """How long the search (`EilsSolver`) looks for each plan: about 0.1 s with 100 tasks, within 1 % of its best."""
 SHARD = 500
 """Plans a file."""
+
+UNREADABLE = (OSError, ValueError, KeyError, EOFError, NotImplementedError, zipfile.BadZipFile, zlib.error)
+"""What NumPy raises of a damaged file."""
 
 Routes = tuple[tuple[int, ...], ...]
 
@@ -47,7 +54,10 @@ def shard_path(folder: Path, first: int) -> Path:
 
 
 def make_shard(config: TrainConfig, first: int, folder: Path) -> Path:
-    """Plan `SHARD` scenarios, from number `first` on, and write them to a file, atomically. Needs the extra `solvers`."""
+    """Plan `SHARD` scenarios, from number `first` on, and write them to a file, atomically.
+
+    Needs the extra `solvers`.
+    """
     from mrta_zoo.io.atomic import replacing
     from mrta_zoo.policies.local_search.eils import EilsConfig, EilsSolver
 
@@ -69,28 +79,40 @@ def read_plans(config: TrainConfig, folder: Path, most: int) -> list[ExpertPlan]
     """The first plans in a folder, with their scenarios.
 
     Raises:
-        ConfigError: if a file is damaged, or does not belong to the configuration.
+        ConfigError: if a file is damaged, or a plan does not belong to the configuration: each task of a plan must be
+            finished in time.
     """
     plans: list[ExpertPlan] = []
     for path in sorted(folder.glob("*.npz")):
         try:
             with np.load(path, allow_pickle=False) as file:
                 index, robots, lengths, tasks = (file[name] for name in ("index", "robots", "lengths", "tasks"))
-        except (OSError, ValueError, KeyError) as error:
+            numbered = list(zip(index.tolist(), _split(robots, lengths, tasks), strict=True))
+        except UNREADABLE as error:
             raise ConfigError(f"{path}: not a readable file of plans ({error})") from None
-        for number, routes in zip(index.tolist(), _split(robots, lengths, tasks), strict=True):
+        for number, routes in numbered:
             if len(plans) == most:
                 return plans
             scenario = expert_scenario(config, number)
-            if len(routes) != scenario.num_robots or any(not 0 <= t < scenario.num_tasks for r in routes for t in r):
+            if not _fits(scenario, routes):
                 raise ConfigError(f"{path}: plan {number} does not fit its scenario; was it made with another seed?")
             plans.append(ExpertPlan(scenario, routes))
     return plans
 
 
+def _fits(scenario: Scenario, routes: Routes) -> bool:
+    """Whether robots can follow the routes, each task in time."""
+    try:
+        return verify(scenario, Plan(routes)).completed == sum(map(len, routes))
+    except PlanError:
+        return False
+
+
 def _split(
     robots: npt.NDArray[np.int64], lengths: npt.NDArray[np.int64], tasks: npt.NDArray[np.int16]
 ) -> Sequence[Routes]:
+    if lengths.sum() != len(tasks) or robots.sum() != len(lengths) or min(lengths.min(), robots.min()) < 0:
+        raise ValueError("its routes do not add up")
     ends = np.cumsum(lengths).tolist()
     starts = [0, *ends[:-1]]
     routes = [tuple(tasks[start:end].tolist()) for start, end in zip(starts, ends, strict=True)]

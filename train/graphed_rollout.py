@@ -103,6 +103,4 @@ class GraphedRollout:
     def _follow(self, state: _Missions) -> Segment:
         assert state.routes is not None
         assert state.position is not None
-        return follow_segment(
-            self._network, state.encoding, state.mission, state.routes, state.position, state.rows
-        )
+        return follow_segment(self._network, state.encoding, state.mission, state.routes, state.position, state.rows)

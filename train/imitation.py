@@ -78,14 +78,14 @@ def follow(network: Network, scenarios: ScenarioBatch, routes: Tensor) -> list[S
 def follow_segment(
     network: Network, encoding: object, mission: BatchMission, routes: Tensor, position: Tensor, rows: Tensor
 ) -> Segment:
-    """The next `SEGMENT` decisions of `follow`; `mission` and (S, M) `position`, where in its route each robot is, go on.
+    """The next `SEGMENT` decisions of `follow`; `mission` and `position` go on.
 
     Args:
         network: as for `follow`, as is `routes`.
         encoding: of the scenarios, by `network`.
         mission: S missions.
         routes: their routes.
-        position: how many tasks of its route each robot has taken.
+        position: (S, M) int64 how many tasks of its route each robot has taken.
         rows: (S,) int64 from 0 to S − 1.
     """
     taken, watch = [], Watch(mission)

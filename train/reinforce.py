@@ -21,13 +21,14 @@ from torch import Tensor
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import ScenarioGenerator
+from mrta_zoo.policies.capam.candidate_decoder import CandidateDecoder
 from mrta_zoo.policies.capam.inputs import Tasks
 from mrta_zoo.policies.rollout import Segment, roll_out
 from mrta_zoo.policies.sharing import Network, build_network
+from mrta_zoo.scenario import Scenario
 from mrta_zoo.train.baselines import Baseline, RolloutBaseline, SamplesBaseline
 from mrta_zoo.train.config import TrainConfig
-from mrta_zoo.scenario import Scenario
-from mrta_zoo.train.distribution import draw_size, training_generator
+from mrta_zoo.train.distribution import draw_size, most_robots, training_generator
 from mrta_zoo.train.experts import ExpertPlan
 from mrta_zoo.train.graphed_rollout import GraphedRollout
 from mrta_zoo.train.imitation import PlanBatch, follow, turned
@@ -104,13 +105,15 @@ class Reinforce:
         self.device = _device(config.device)
         self.generator = generator
         self.objective = OBJECTIVES[config.objective]
-        self.network: Network = build_network(config.network, config.sharing, config.max_robots, config.seed)
+        self.network: Network = build_network(config.network, config.sharing, most_robots(config), config.seed)
         if config.initial:
             self._start_from(config.initial)
         self.network.to(self.device)
         if options.compiled:
-            for layer in getattr(self.network.decoder, "layers", ()):
-                layer.compile(dynamic=True)
+            for module in self.network.modules():
+                if isinstance(module, CandidateDecoder):
+                    for layer in module.layers:
+                        layer.compile(dynamic=True)
         self.optimizer = torch.optim.Adam(self.network.parameters(), lr=config.learning_rate)
         self.baseline: Baseline = (
             RolloutBaseline(self.network, self.objective, config.mask_rule, config.significance)
@@ -124,7 +127,7 @@ class Reinforce:
         # An encoding of independent networks is not worth the care: they are for comparisons, not for speed.
         graphs = self.device.type == "cuda" and config.sharing == "shared"
         self._graphed = (
-            GraphedRollout(self.network, config.samples, config.mask_rule, config.precision, self.device)  # type: ignore[arg-type]
+            GraphedRollout(self.network, config.samples, config.mask_rule, config.precision, self.device)
             if graphs
             else None
         )
@@ -153,7 +156,8 @@ class Reinforce:
         """One gradient step.
 
         Raises:
-            ConfigError: if training has diverged; the weights are then as before.
+            ConfigError: if training has diverged, and the weights are then as before; or if there are no plans to
+                imitate.
         """
         if self.update == self.config.imitation_updates:
             self.optimizer.state.clear()  # gradients of REINFORCE are of another size
@@ -199,6 +203,8 @@ class Reinforce:
     def _imitate(self) -> tuple[float, int]:
         """Gradients of the mean log-probability of the decisions behind some plans; its negative, and their number."""
         config = self.config
+        if not self._plans:
+            raise ConfigError("there are no plans to imitate; give them (set_plans), or set imitation_updates to 0")
         rng = np.random.default_rng((config.seed, 0, self.update))
         plans = self._plans[draw_size(config, rng)]
         rows = torch.from_numpy(rng.integers(len(plans), size=config.imitation_batch)).to(self.device)
@@ -324,7 +330,9 @@ def accumulate_gradients(
         loss = loss / advantage.numel()
         loss.backward()
         total += loss.detach()
-    torch.autograd.backward([of for of, _ in leaves], [leaf.grad for _, leaf in leaves])
+    # None where nothing was decided by it: by the networks of robots that no scenario has, or by any.
+    used = [(of, leaf.grad) for of, leaf in leaves if leaf.grad is not None]
+    torch.autograd.backward([of for of, _ in used], [gradient for _, gradient in used])
     return float(total)
 
 
@@ -337,7 +345,7 @@ def _cut(encoding: Any, leaves: list[tuple[Tensor, Tensor]]) -> Any:
         return leaves[-1][1]
     if isinstance(encoding, tuple):
         return tuple(_cut(each, leaves) for each in encoding)
-    if is_dataclass(encoding):
+    if is_dataclass(encoding) and not isinstance(encoding, type):
         return type(encoding)(*(_cut(getattr(encoding, field.name), leaves) for field in fields(encoding)))
     return encoding
 

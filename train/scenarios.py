@@ -57,7 +57,8 @@ class Feed:
             return draw(self._config, self._generator, update)
         if self._pool is None:
             self._pool = ProcessPoolExecutor(self._workers, multiprocessing.get_context("spawn"))
-        for number in range(update, min(update + AHEAD * self._workers, self._config.total_updates)):
+        last = min(update + AHEAD * self._workers, self._config.total_updates)
+        for number in range(update, max(last, update + 1)):  # the run may have been made longer since
             if number not in self._ahead:
                 self._ahead[number] = self._pool.submit(draw, self._config, self._generator, number)
         return self._ahead.pop(update).result()

@@ -17,9 +17,10 @@ from mrta_zoo.policies.capam.candidates import (
 class CandidateDecoder(nn.Module):
     """Scores the candidates by letting them, the acting robot and its nearest peers attend to each other.
 
-    Ours, not the paper's. Attention weights are biased, head by head, by how each task would follow another one, or what
-    a robot is at (`Candidates.pairs`), in the manner of the edge biases of Graphormer (Ying et al. 2021). To each score
-    comes −β · (travel + work), β learned, so that training starts near the nearest-task heuristic and not from noise.
+    Ours, not the paper's. Attention weights are biased, head by head, by how each task would follow another one, or
+    what a robot is at (`Candidates.pairs`), in the manner of the edge biases of Graphormer (Ying et al. 2021). To each
+    score comes −β · (travel + work), β learned, so that training starts near the nearest-task heuristic and not from
+    noise.
 
     Args:
         embedding: h, length of embeddings.
@@ -36,9 +37,10 @@ class CandidateDecoder(nn.Module):
         self.mission = nn.Linear(len(MISSION_COLUMNS), embedding)
         self.layers = nn.ModuleList(_Layer(embedding, heads) for _ in range(layers))
         self.norm = nn.LayerNorm(embedding)
-        self.score = nn.Sequential(nn.Linear(embedding, embedding), nn.GELU(), nn.Linear(embedding, 1))
-        nn.init.zeros_(self.score[2].weight)
-        nn.init.zeros_(self.score[2].bias)
+        last = nn.Linear(embedding, 1)
+        nn.init.zeros_(last.weight)
+        nn.init.zeros_(last.bias)
+        self.score = nn.Sequential(nn.Linear(embedding, embedding), nn.GELU(), last)
         self.log_beta = nn.Parameter(torch.tensor(beta).log())
 
     def forward(self, embeddings: Tensor, candidates: Candidates) -> Tensor:
@@ -65,7 +67,8 @@ class CandidateDecoder(nn.Module):
                 hidden = layer(hidden, pairs, valid)
         out = self.score(self.norm(hidden[:, -k:])).view(s, g, k).float()
         duration = candidates.task[..., TASK_COLUMNS.index("travel")] + candidates.task[..., TASK_COLUMNS.index("work")]
-        return (out - self.log_beta.exp() * duration).masked_fill(~candidates.valid, -torch.inf)
+        scores: Tensor = (out - self.log_beta.exp() * duration).masked_fill(~candidates.valid, -torch.inf)
+        return scores
 
 
 class _Layer(nn.Module):
@@ -79,7 +82,9 @@ class _Layer(nn.Module):
         self.out = nn.Linear(embedding, embedding, bias=False)
         self.to_task = nn.Linear(PAIR_COLUMNS, heads)
         self.to_robot = nn.Linear(PAIR_COLUMNS, heads)
-        self.feed_forward = nn.Sequential(nn.Linear(embedding, 2 * embedding), nn.GELU(), nn.Linear(2 * embedding, embedding))
+        self.feed_forward = nn.Sequential(
+            nn.Linear(embedding, 2 * embedding), nn.GELU(), nn.Linear(2 * embedding, embedding)
+        )
 
     def forward(self, hidden: Tensor, pairs: Tensor, valid: Tensor) -> Tensor:
         """(B, R + K, h) to the same; pairs (B, R + K, K, PAIR_COLUMNS), valid (B, R + K) bool."""

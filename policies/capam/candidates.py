@@ -92,7 +92,9 @@ class Candidates:
         slack = left - busy
 
         robots = _Robots.of(tasks, moments, ego_xy, elapsed, most_peers)
-        arrival = robots.wait[..., None] + _distance(robots.xy[..., None, :], xy[..., None, :, :]) * robots.pace[..., None]
+        arrival = (
+            robots.wait[..., None] + _distance(robots.xy[..., None, :], xy[..., None, :, :]) * robots.pace[..., None]
+        )
         in_time = arrival + work[..., None, :] * robots.rate[..., None] <= left[..., None, :]
         rival = arrival.masked_fill(~robots.valid[..., None], torch.inf)[..., 1:, :]
         peers = robots.valid[..., 1:].sum(-1, keepdim=True).clamp(min=1)
@@ -123,7 +125,8 @@ class Candidates:
             (
                 elapsed / USUAL_CROSSINGS, horizon.expand_as(elapsed) / USUAL_CROSSINGS,
                 tasks.work_unit[:, None, None].expand_as(elapsed), free / exist,
-                (free / (1 + robots.working) / 50).clamp(max=2.0), time_left.sum(-1, keepdim=True) / free.clamp(min=1) / 4,
+                (free / (1 + robots.working) / 50).clamp(max=2.0),
+                time_left.sum(-1, keepdim=True) / free.clamp(min=1) / 4,
             ),
             -1,
         ).clamp(max=2.0)  # fmt: skip
@@ -185,7 +188,9 @@ class _Robots:
         wait = (moments.ready * tasks.horizon[:, None, None] - elapsed).clamp(min=0)
         peers = moments.peers
         reach = wait + _distance(moments.xy, ego_xy[..., None, :]) / moments.speed
-        key = (reach + 1e-6 * moments.capacity).masked_fill(~peers, torch.inf)
+        # Ties, frequent on whole coordinates, are broken by what robots are, not how numbered.
+        kind = 2.7 * moments.xy[..., 0] + 1.9 * moments.xy[..., 1] + moments.capacity + 1.3 * moments.speed
+        key = (reach.double() + 1e-6 * kind).masked_fill(~peers, torch.inf)
         count = min(most_peers, key.shape[-1] - 1)
         nearest = key.topk(count, dim=-1, largest=False).indices
         chosen = torch.cat((moments.ego[..., None], nearest), -1)
@@ -194,7 +199,8 @@ class _Robots:
             return values.gather(2, chosen)
 
         valid = torch.cat((torch.ones_like(peers[..., :1]), peers.gather(2, nearest)), -1)
-        capacity, speed = of_robot(moments.capacity), of_robot(moments.speed)
+        # Padding has speed and capacity 0 in observations; what is divided by them would not be finite.
+        capacity, speed = (of_robot(of).masked_fill(~valid, 1.0) for of in (moments.capacity, moments.speed))
         xy = torch.stack((of_robot(moments.xy[..., 0]), of_robot(moments.xy[..., 1])), -1)
         return cls(
             xy=xy,
