@@ -136,7 +136,7 @@ def _improve(scenario: Scenario, plan: Plan, method: str, seed: int, budget: flo
     return plan_of(best, scenario, method)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def anneal(
     problem: Problem,
     tours: Tours,
@@ -175,7 +175,8 @@ def anneal(
         changed[:] = False
         remove_strings(problem, trial, changed, removals, rng)
         for task in range(n):
-            weight[task] = 1.0 + noise * rng.random()
+            if trial.robot[task] < 0:
+                weight[task] = 1.0 + noise * rng.random()
         fill(problem, trial, shift, changed, weight)
         new_value = reward * trial.size.sum() - total_time(trial)
         if new_value > value + temperature * math.log(1.0 - rng.random()):
@@ -194,7 +195,7 @@ def anneal(
             trial.robot[:] = tours.robot
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def remove_strings(
     problem: Problem, tours: Tours, changed: npt.NDArray[np.bool_], removals: float, rng: np.random.Generator
 ) -> None:
@@ -226,7 +227,7 @@ def remove_strings(
             break
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def total_time(tours: Tours) -> float:
     """The time until each robot is through with its tour, summed over the robots."""
     total = 0.0
