@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import time
 from dataclasses import dataclass, field, fields
+from typing import Any, Protocol
 
 import torch
 from torch import Tensor
@@ -11,7 +14,6 @@ from mrta_zoo.batch import BatchMission, ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.capam.inputs import Moments, Tasks, Watch
-from mrta_zoo.policies.sharing import Network
 from mrta_zoo.rules import MaskRule
 
 SEGMENT = 12
@@ -21,6 +23,23 @@ NOT_FINITE = (
     "the network gives probabilities that are not finite: its weights are spoilt (did training diverge?), or the "
     "scenario is beyond what float32 can hold"
 )
+
+
+class OutOfTimeError(Exception):
+    """The time was up before the missions were over."""
+
+
+class Scorer(Protocol):
+    """What decides: a `sharing.Network`, or anything else that scores tasks like one."""
+
+    def encode(self, tasks: Tasks) -> Any:
+        """What it knows of S missions' tasks; `select` gives that of some of them."""
+
+    def features(self, encoding: Any, moments: Moments) -> Any:
+        """What scoring needs to know of these moments besides, or None."""
+
+    def __call__(self, encoding: Any, moments: Moments, features: Any = None) -> Any:
+        """(S, G, N) log-probabilities of choosing each task, as `AllocationNetwork.forward` gives them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +84,7 @@ class Rollout:
 
 @torch.no_grad()
 def roll_out(
-    network: Network,
+    network: Scorer,
     scenarios: ScenarioBatch,
     *,
     samples: int = 1,
@@ -73,6 +92,7 @@ def roll_out(
     mask_rule: MaskRule = "feasible",
     keep_plans: bool = False,
     keep_segments: bool = False,
+    until: float | None = None,
 ) -> Rollout:
     """Let `network` decide for all robots of all missions.
 
@@ -84,9 +104,11 @@ def roll_out(
         mask_rule: what robots may choose.
         keep_plans: whether to return the plans.
         keep_segments: whether to return every decision, for learning.
+        until: by `time.perf_counter`, when to give up; None never does.
 
     Raises:
         ConfigError: if the network gives probabilities that are not finite.
+        OutOfTimeError: if there is not time enough.
     """
     tasks = Tasks.of_batch(scenarios)
     encoding = network.encode(tasks)
@@ -115,8 +137,9 @@ def roll_out(
             mission = mission.select(_rows(keep, samples))
             encoding = encoding.select(keep)
         log_prob = _run_segment(
-            network, encoding, mission, samples, generator, under_way, out.segments if keep_segments else None
-        )
+            network, encoding, mission, samples, generator, under_way, out.segments if keep_segments else None,
+            math.inf if until is None else until,
+        )  # fmt: skip
         # NaN would not only spoil the outcome: a mission that never takes a legal task would never end.
         if not torch.isfinite(log_prob).all():
             raise ConfigError(NOT_FINITE)
@@ -126,20 +149,23 @@ def roll_out(
 
 
 def _run_segment(
-    network: Network,
-    encoding: object,
+    network: Scorer,
+    encoding: Any,
     mission: BatchMission,
     samples: int,
     generator: torch.Generator | None,
     under_way: Tensor,
     segments: list[Segment] | None,
+    until: float,
 ) -> Tensor:
     taken: list[tuple[Moments, Tensor | None, Tensor, Tensor]] = []
     log_prob = torch.zeros(len(mission.actor), device=mission.actor.device)
     watch = Watch(mission, samples)
     for _ in range(SEGMENT):
+        if until < math.inf and time.perf_counter() >= until:
+            raise OutOfTimeError
         moments = watch.moments()
-        features = network.features(encoding, moments)  # type: ignore[arg-type]
+        features = network.features(encoding, moments)
         log_probs = network(encoding, moments, features).flatten(0, 1)
         if generator is None:
             action = log_probs.argmax(-1)
