@@ -53,11 +53,11 @@ class EilsConfig:
 
     iterations_a_task: int = 3
     least_iterations: int = 300
-    removals: float = 12.0
+    removals: float = 16.0
     noise: float = 1.0
     reward: float = 4.0
     hot: float = 2.0
-    cold: float = 0.05
+    cold: float = 0.1
 
     def __post_init__(self) -> None:
         for field in ("iterations_a_task", "least_iterations", "removals"):
