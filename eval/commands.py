@@ -45,11 +45,14 @@ class PlanningFlags:
     """How methods plan. Each method uses what it can: heuristics only the mask rule (and random the seed), exact only
     the budget, pyvrp the budget and the seed, big-mrta nothing."""
 
-    decode: Annotated[Decode | None, optional("{greedy,sample}")] = None
+    decode: Annotated[Decode | None, optional("{greedy,sample,augment,beam}")] = None
     """How learned methods choose: greedy takes the likeliest task each time; sample takes the best of several drawn
-    missions and the greedy one. By default sample if --budget is given, otherwise greedy."""
-    samples: int = 64
-    """Missions that sample draws in one go; with --budget it goes on drawing."""
+    missions and the greedy one; augment the best of 8 greedy ones, the map mirrored and turned, and with --budget of
+    more drawn so; beam the best of a beam search, with --budget wider and wider. By default sample if --budget is
+    given, otherwise greedy."""
+    samples: Annotated[int | None, optional("N")] = None
+    """Missions that sample draws in one go, 64 by default; with --budget it goes on drawing. For beam its width, 16 by
+    default."""
     budget: Annotated[float | None, optional("SECONDS")] = None
     """Seconds a mission for methods that can search for longer. By default they stop by themselves; exact after 60
     at most, pyvrp after 5."""
@@ -60,7 +63,8 @@ class PlanningFlags:
     unvisited, anything not yet taken. By default feasible or, for a trained policy, what it was trained under.
     big-mrta, exact and pyvrp only plan what is finished by its deadline."""
     threads: int = 1
-    """CPU threads for learned methods. One is as fast as several for single missions, and timings compare."""
+    """CPU threads for learned methods: one is as fast as several for single missions, and timings compare. For eils
+    and +polish with --budget, as many searches at a time, of which the best counts."""
 
     def solver(self, method: str) -> Solver:
         """The method, made with these flags."""
@@ -71,6 +75,7 @@ class PlanningFlags:
             samples=self.samples,
             budget=self.budget,
             mask_rule=self.mask_rule,
+            threads=self.threads,
         )
 
 

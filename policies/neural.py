@@ -17,9 +17,10 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.observation import MISSION_FEATURES, TASK_FEATURES, Observation
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
-from mrta_zoo.policies.options import Decode
+from mrta_zoo.policies.decoding import Decoding, best_plan
+from mrta_zoo.policies.options import Decode, SolverOptions
 from mrta_zoo.policies.pretrained import pretrained_names, pretrained_path
-from mrta_zoo.policies.rollout import NOT_FINITE, Rollout, roll_out
+from mrta_zoo.policies.rollout import NOT_FINITE, OutOfTimeError, roll_out
 from mrta_zoo.policies.sharing import Network
 from mrta_zoo.policies.weights import PolicyInfo, load_weights
 from mrta_zoo.rules import MaskRule
@@ -27,8 +28,6 @@ from mrta_zoo.scenario import Scenario
 
 UNCHANGING_TASK = [TASK_FEATURES.index(name) for name in ("x", "y", "deadline", "workload")]
 UNCHANGING_MISSION = [MISSION_FEATURES.index(name) for name in ("crossing_ratio", "work_ratio")]
-FIRST_SAMPLES = 4
-"""Missions drawn at first when there is a budget, to see how long they take."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +49,7 @@ class NeuralPolicy:
         network: scores the tasks.
         info: what belongs to the network.
         name: what plans are signed with.
-        decode: how `act` chooses: the likeliest task ("greedy"), or drawn from the probabilities ("sample").
+        decode: how `act` chooses: drawn from the probabilities ("sample"), or the likeliest task (anything else).
         seed: of the draws.
     """
 
@@ -105,10 +104,10 @@ class NeuralPolicy:
         log_probs = self.network(self._encoding, Moments.of_observations([observation]))[0, 0]
         if torch.isnan(log_probs).any():
             raise ConfigError(NOT_FINITE)
-        if self.decode == "greedy":
-            action = int(log_probs.argmax())
-        else:
+        if self.decode == "sample":
             action = int(torch.multinomial(log_probs.exp(), 1, generator=self._generator))
+        else:
+            action = int(log_probs.argmax())
         return Decision(action, float(log_probs[action]), log_probs.exp().numpy())
 
     def solve(
@@ -116,7 +115,7 @@ class NeuralPolicy:
         scenario: Scenario,
         *,
         decode: Decode = "greedy",
-        samples: int = 64,
+        samples: int | None = None,
         budget: float | None = None,
         mask_rule: MaskRule | None = None,
         seed: int = 0,
@@ -125,39 +124,58 @@ class NeuralPolicy:
 
         Args:
             scenario: what to plan.
-            decode: "greedy", one pass; or "sample", the best of `samples` drawn missions and the greedy one.
-            samples: missions drawn in one go.
-            budget: with "sample", go on drawing for this many seconds instead of stopping after one go.
+            decode: "greedy", one pass; "sample", the best of `samples` drawn missions and the greedy one; "augment",
+                the best of 8 greedy ones, the map seen in each of its symmetries; "beam", the best that a beam search
+                of width `samples` finishes, and the greedy one.
+            samples: missions drawn in one go, or the width of the beam; by default `options.DEFAULT_SAMPLES`.
+            budget: seconds to search for instead of stopping after one go: "sample" goes on drawing, "augment" draws
+                missions with the map seen in each symmetry, "beam" starts again with twice the width. The first
+                greedy mission is finished even if it takes longer.
             mask_rule: what robots may choose; by default what the policy was trained under.
             seed: of the draws.
 
         Raises:
             ConfigError: if an option is out of range.
         """
-        _check_decode(decode)
-        if samples < 1:
-            raise ConfigError(f"samples is {samples}; expected a whole number >= 1")
-        if budget is not None and not budget > 0:
-            raise ConfigError(f"budget is {budget}; expected a number of seconds > 0")
-        rule: MaskRule = mask_rule or self.info.mask_rule
-        batch = ScenarioBatch.of([scenario])
-        deadline = time.perf_counter() + (budget or 0.0)
-        best = _Best()
-        best.offer(roll_out(self.network, batch, mask_rule=rule, keep_plans=True))
-        generator = torch.Generator().manual_seed(seed)
-        draws = samples if budget is None else min(samples, FIRST_SAMPLES)
-        while decode == "sample" and draws > 0:
-            begun = time.perf_counter()
-            if budget is not None and begun >= deadline:
-                break
-            best.offer(
-                roll_out(self.network, batch, samples=draws, generator=generator, mask_rule=rule, keep_plans=True)
-            )
-            if budget is None:
-                break
-            now = time.perf_counter()
-            draws = min(samples, int(draws * (deadline - now) / (now - begun)))
-        return Plan(best.plan.routes, scenario.name, self.name)
+        return self._plan(scenario, decode, samples, budget, mask_rule, seed, hurried=False)
+
+    def solve_within(
+        self,
+        scenario: Scenario,
+        seconds: float,
+        *,
+        decode: Decode = "greedy",
+        samples: int | None = None,
+        mask_rule: MaskRule | None = None,
+        seed: int = 0,
+    ) -> Plan | None:
+        """As `solve` with a budget of `seconds`, but None if not even the greedy mission is finished in time."""
+        try:
+            return self._plan(scenario, decode, samples, seconds, mask_rule, seed, hurried=True)
+        except OutOfTimeError:
+            return None
+
+    def _plan(
+        self,
+        scenario: Scenario,
+        decode: Decode,
+        samples: int | None,
+        budget: float | None,
+        mask_rule: MaskRule | None,
+        seed: int,
+        hurried: bool,
+    ) -> Plan:
+        begun = time.perf_counter()
+        SolverOptions(decode=decode, samples=samples, budget=budget, mask_rule=mask_rule, seed=seed)  # checks them
+        how = Decoding(
+            decode=decode,
+            samples=samples,
+            until=None if budget is None else begun + budget,
+            hurried=hurried,
+            mask_rule=mask_rule or self.info.mask_rule,
+            seed=seed,
+        )
+        return Plan(best_plan(self.network, scenario, how).routes, scenario.name, self.name)
 
     def solve_batch(self, scenarios: Sequence[Scenario], mask_rule: MaskRule | None = None) -> list[Plan]:
         """Greedy plans for many missions at once, faster than one by one."""
@@ -166,20 +184,6 @@ class NeuralPolicy:
         return [
             Plan(plan.routes, scenario.name, self.name) for plan, scenario in zip(rollout.plans, scenarios, strict=True)
         ]
-
-
-class _Best:
-    """The best plan so far: most tasks completed, then least cost, then first found."""
-
-    def __init__(self) -> None:
-        self.plan = Plan(())
-        self._key = (-1, -float("inf"))
-
-    def offer(self, rollout: Rollout) -> None:
-        keys = zip(rollout.completed.tolist(), (-rollout.cost).tolist(), strict=True)
-        for key, plan in zip(keys, rollout.plans, strict=True):
-            if key > self._key:
-                self._key, self.plan = key, plan
 
 
 def load_policy(name_or_path: str | Path, decode: Decode = "greedy", seed: int = 0) -> NeuralPolicy:

@@ -34,3 +34,15 @@ class NeedsWarmUp(Protocol):
     def warm_up(self, scenario: Scenario) -> None:
         """Do whatever happens only once."""
         ...
+
+
+@runtime_checkable
+class Hurried(Protocol):
+    """A solver that can give up."""
+
+    @property
+    def name(self) -> str:
+        """What its plans are signed with."""
+
+    def solve_within(self, scenario: Scenario, seconds: float) -> Plan | None:
+        """A plan for `scenario`, None if there is none after so many seconds."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from mrta_zoo.errors import ConfigError
@@ -83,6 +83,26 @@ class LearnedSolver:
             seed=options.seed,
         )
 
+    @property
+    def name(self) -> str:
+        """What plans are signed with."""
+        return self.policy.name
+
+    def solve_within(self, scenario: Scenario, seconds: float) -> Plan | None:
+        """The plan without a search if the policy searches only on a budget, else the best found in that time.
+
+        None if not even the first greedy mission is finished in time.
+        """
+        options = self._options
+        return self.policy.solve_within(
+            scenario,
+            seconds,
+            decode=options.decode or "greedy",
+            samples=options.samples,
+            mask_rule=options.mask_rule,
+            seed=options.seed,
+        )
+
     def warm_up(self, scenario: Scenario) -> None:
         """Plan once without a search: the first pass of a network is slower than those that follow."""
         self.policy.solve(scenario, mask_rule=self._options.mask_rule)
@@ -97,7 +117,7 @@ def _ils(options: SolverOptions) -> Solver:
 def _eils(options: SolverOptions) -> Solver:
     from mrta_zoo.policies.local_search.eils import EilsSolver
 
-    return EilsSolver(options.seed, options.budget)
+    return EilsSolver(options.seed, options.budget, threads=options.threads)
 
 
 def _exact(options: SolverOptions) -> Solver:
@@ -158,38 +178,45 @@ def make_solver(
     *,
     seed: int = 0,
     decode: Decode | None = None,
-    samples: int = 64,
+    samples: int | None = None,
     budget: float | None = None,
     mask_rule: MaskRule | None = None,
+    threads: int = 1,
 ) -> Solver:
     """The method of that name, ready to plan.
 
     Args:
         name: one of `method_names()`, a trained policy's ``.safetensors`` file, or the folder of a training run; with
-            `POLISH` at its end, local search improves the plan, and by default the budget is left to it.
+            `POLISH` at its end, local search improves the plan and has most of the budget.
         seed: see `SolverOptions`, as for all that follow.
         decode: how learned methods choose.
-        samples: missions that sampling draws in one go.
+        samples: missions that sampling draws in one go, or the width of the beam.
         budget: seconds a scenario for methods that search.
         mask_rule: what robots may choose.
+        threads: searches that local search carries on at a time, if there is a budget.
 
     Raises:
         ConfigError: if there is no such method, or an option is out of range.
         MissingExtraError: if the method needs what is not installed.
     """
-    if name.endswith(POLISH):
-        return _polished(
-            name.removesuffix(POLISH),
-            SolverOptions(seed=seed, decode=decode or "greedy", samples=samples, budget=budget, mask_rule=mask_rule),
-        )
-    return _make(name, SolverOptions(seed=seed, decode=decode, samples=samples, budget=budget, mask_rule=mask_rule))
+    polished = name.endswith(POLISH)
+    options = SolverOptions(
+        seed=seed,
+        decode="greedy" if polished and decode is None else decode,
+        samples=samples,
+        budget=budget,
+        mask_rule=mask_rule,
+        threads=threads,
+    )
+    return _polished(name.removesuffix(POLISH), options) if polished else _make(name, options)
 
 
 def _polished(name: str, options: SolverOptions) -> Solver:
     require("solvers", f"method {name + POLISH!r}")
-    from mrta_zoo.policies.local_search.polish import PolishedSolver
+    from mrta_zoo.policies.local_search.polish import METHOD_SHARE, PolishedSolver
 
-    return PolishedSolver(_make(name, options), options.seed, options.budget)
+    share = None if options.budget is None else METHOD_SHARE * options.budget
+    return PolishedSolver(_make(name, replace(options, budget=share)), options.seed, options.budget, options.threads)
 
 
 def _make(name: str, options: SolverOptions) -> Solver:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
-from typing import TypeVar
+from typing import Any, Protocol, TypeVar
 
 import torch
 from torch import Tensor
@@ -14,7 +16,6 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.capam.candidates import Candidates
 from mrta_zoo.policies.capam.inputs import Moments, Tasks, Watch
-from mrta_zoo.policies.sharing import Network
 from mrta_zoo.rules import MaskRule
 
 SEGMENT = 12
@@ -26,6 +27,23 @@ NOT_FINITE = (
     "the network gives probabilities that are not finite: its weights are spoilt (did training diverge?), or the "
     "scenario is beyond what float32 can hold"
 )
+
+
+class OutOfTimeError(Exception):
+    """The time was up before the missions were over."""
+
+
+class Scorer(Protocol):
+    """What decides: a `sharing.Network`, or anything else that scores tasks like one."""
+
+    def encode(self, tasks: Tasks) -> Any:
+        """What it knows of S missions' tasks; `select` gives that of some of them."""
+
+    def features(self, encoding: Any, moments: Moments) -> Any:
+        """What scoring needs to know of these moments besides, or None."""
+
+    def __call__(self, encoding: Any, moments: Moments, features: Any = None) -> Any:
+        """(S, G, N) log-probabilities of choosing each task, as `AllocationNetwork.forward` gives them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +132,7 @@ class Rollout:
 
 
 def roll_out(
-    network: Network,
+    network: Scorer,
     scenarios: ScenarioBatch,
     *,
     samples: int = 1,
@@ -122,6 +140,7 @@ def roll_out(
     mask_rule: MaskRule = "feasible",
     keep_plans: bool = False,
     keep_segments: bool = False,
+    until: float | None = None,
 ) -> Rollout:
     """Let `network` decide for all robots of all missions.
 
@@ -133,23 +152,26 @@ def roll_out(
         mask_rule: what robots may choose.
         keep_plans: whether to return the plans.
         keep_segments: whether to return every decision, for learning.
+        until: by `time.perf_counter`, when to give up; None never does.
 
     Raises:
         ConfigError: if the network gives probabilities that are not finite.
+        OutOfTimeError: if there is not time enough.
     """
     # Inference mode is quicker, but what it makes can't take part in learning.
     with torch.no_grad() if keep_segments else torch.inference_mode():
-        return _roll_out(network, scenarios, samples, generator, mask_rule, keep_plans, keep_segments)
+        return _roll_out(network, scenarios, samples, generator, mask_rule, keep_plans, keep_segments, until)
 
 
 def _roll_out(
-    network: Network,
+    network: Scorer,
     scenarios: ScenarioBatch,
     samples: int,
     generator: torch.Generator | None,
     mask_rule: MaskRule,
     keep_plans: bool,
     keep_segments: bool,
+    until: float | None,
 ) -> Rollout:
     encoding = network.encode(Tasks.of_batch(scenarios))
     mission = BatchMission(scenarios.repeat(samples), mask_rule)
@@ -177,8 +199,9 @@ def _roll_out(
             mission = mission.select(_rows(keep, samples))
             encoding = encoding.select(keep)
         log_prob = run_segment(
-            network, encoding, mission, samples, generator, under_way, out.segments if keep_segments else None
-        )
+            network, encoding, mission, samples, generator, under_way, out.segments if keep_segments else None,
+            math.inf if until is None else until,
+        )  # fmt: skip
         # NaN would not only spoil the outcome: a mission that never takes a legal task would never end.
         if not torch.isfinite(log_prob).all():
             raise ConfigError(NOT_FINITE)
@@ -188,13 +211,14 @@ def _roll_out(
 
 
 def run_segment(
-    network: Network,
-    encoding: object,
+    network: Scorer,
+    encoding: Any,
     mission: BatchMission,
     samples: int,
     generator: torch.Generator | None,
     under_way: Tensor,
     segments: list[Segment] | None,
+    until: float = math.inf,
 ) -> Tensor:
     """Let the network take the next `SEGMENT` decisions of each mission.
 
@@ -206,6 +230,10 @@ def run_segment(
         generator: of the draws; None takes the likeliest.
         under_way: (S,) int64 what `Segment.scenarios` is to be.
         segments: where the decisions go, or None.
+        until: time by the clock of `time.perf_counter` after which no decision begins.
+
+    Raises:
+        OutOfTimeError: if the time is up.
 
     Returns:
         (B,) log-probability of the decisions together.
@@ -214,8 +242,10 @@ def run_segment(
     log_prob = torch.zeros(len(mission.actor), device=mission.actor.device)
     watch = Watch(mission, samples)
     for _ in range(SEGMENT):
+        if until < math.inf and time.perf_counter() >= until:
+            raise OutOfTimeError
         moments = watch.moments()
-        features = network.features(encoding, moments)  # type: ignore[arg-type]
+        features = network.features(encoding, moments)
         log_probs = network(encoding, moments, features).flatten(0, 1)
         if generator is None:
             action = log_probs.argmax(-1)

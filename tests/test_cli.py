@@ -281,7 +281,7 @@ def test_mistakes_get_a_sentence(
     ("arguments", "complaint"),
     [
         (["solve"], "TASKFILE"),
-        (["solve", "x.txt", "--decode", "beam"], "--decode"),
+        (["solve", "x.txt", "--decode", "beams"], "--decode"),
         (["solve", "x.txt", "--budget", "long"], "--budget"),
         (["solve", "x.txt", "--mask-rule", "any"], "--mask-rule"),
         (["solve", "x.txt", "--metod", "nearest"], "--method"),
@@ -293,6 +293,17 @@ def test_mistakes_get_a_sentence(
 )
 def test_misspelt_flags_are_refused(arguments: list[str], complaint: str, capsys: Captured) -> None:
     assert complaint in refused(capsys, arguments)
+
+
+@pytest.mark.parametrize("decode", ["augment", "beam"])
+def test_solve_decodes_as_it_is_told(cases: Path, tmp_path: Path, decode: str) -> None:
+    neural = pytest.importorskip("mrta_zoo.policies.neural")
+    case, out = next(cases.glob("group1/*.txt")), tmp_path / "plan.json"
+    flags = ["--method", "capam", "--decode", decode, "--samples", "4", "--out", str(out)]
+    assert main(["solve", str(case), *flags]) == 0
+    scenario = read_scenario(case)
+    expected = neural.load_policy("capam").solve(scenario, decode=decode, samples=4)
+    assert read_plan(out).routes == expected.routes
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="root may write anywhere")

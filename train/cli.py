@@ -47,8 +47,8 @@ class TrainCommand:
     resume: bool = False
     """Go on with the run in --out; its configuration is kept, so that no other flag is needed."""
     prepare: bool = False
-    """Only write the configuration and, if there is imitation, make the plans: to train elsewhere with nothing but torch
-    and NumPy, see mrta_zoo.train.bare."""
+    """Only write the configuration and, if there is imitation, make the plans: to train elsewhere, with torch and NumPy
+    alone; see mrta_zoo.train.bare."""
     collect: bool = False
     """Only take over what `mrta_zoo.train.bare` left in --out, as the run's policy."""
     workers: int = 1

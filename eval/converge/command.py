@@ -59,7 +59,7 @@ class Converge:
     seed: int = 0
     """Of everything drawn at random, the bootstrap included."""
     threads: int = 1
-    """CPU threads for trained methods."""
+    """CPU threads for trained methods, and searches at a time for eils and polishing."""
 
 
 def converge_command(argv: Sequence[str]) -> None:
@@ -77,7 +77,8 @@ def converge_command(argv: Sequence[str]) -> None:
         (None, {name: make_solver(name, seed=command.seed) for name in points})
     ]
     plan += [
-        (budget, {name: make_solver(name, seed=command.seed, budget=budget) for name in methods}) for budget in budgets
+        (budget, {n: make_solver(n, seed=command.seed, budget=budget, threads=command.threads) for n in methods})
+        for budget in budgets
     ]
     settings = {"cases": shown_cases(command.cases), "methods": methods, "points": points, "budgets": budgets,
                 "every": command.every, "seed": command.seed, "threads": command.threads}  # fmt: skip

@@ -75,7 +75,7 @@ class Reproduce:
     seed: int = 0
     """Of everything drawn at random, the bootstrap included."""
     threads: int = 1
-    """CPU threads for trained methods."""
+    """CPU threads for trained methods, and searches at a time for eils and polishing."""
 
 
 def reproduce_command(argv: Sequence[str]) -> None:
@@ -224,7 +224,7 @@ def reference_of(methods: Sequence[str], asked: str | None) -> str:
 
 def _solver(method: str, command: Reproduce) -> Solver:
     budget = PYVRP_SECONDS if method == "pyvrp" and command.budget is None else command.budget
-    return make_solver(method, seed=command.seed, decode="greedy", budget=budget)
+    return make_solver(method, seed=command.seed, decode="greedy", budget=budget, threads=command.threads)
 
 
 def _exact_solver(command: Reproduce, absent: dict[str, str]) -> dict[str, Solver]:

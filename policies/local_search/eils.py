@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import cache
 
@@ -28,7 +29,9 @@ from mrta_zoo.scenario import FloatArray, Scenario
 from mrta_zoo.verify import verify
 
 CHUNK = 100
-"""Iterations between two looks at the clock."""
+"""Iterations at one temperature, at most."""
+LOOKS = 100
+"""At the clock, about so many at least, if there is a budget."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,11 +53,11 @@ class EilsConfig:
 
     iterations_a_task: int = 3
     least_iterations: int = 300
-    removals: float = 12.0
+    removals: float = 16.0
     noise: float = 1.0
     reward: float = 4.0
     hot: float = 2.0
-    cold: float = 0.05
+    cold: float = 0.1
 
     def __post_init__(self) -> None:
         for field in ("iterations_a_task", "least_iterations", "removals"):
@@ -75,10 +78,15 @@ class EilsSolver:
         budget: seconds a scenario, > 0; by default `EilsConfig.iterations_a_task` ends the search, and the plan does
             not depend on the machine.
         config: how the search goes.
+        threads: with a budget, so many searches go on at a time, each with draws of its own, and the best plan counts.
+            Without one there is one search, and the plan does not depend on this.
     """
 
-    def __init__(self, seed: int = 0, budget: float | None = None, config: EilsConfig | None = None) -> None:
+    def __init__(
+        self, seed: int = 0, budget: float | None = None, config: EilsConfig | None = None, threads: int = 1
+    ) -> None:
         self._seed, self._budget, self._config = seed, budget, config or EilsConfig()
+        self._threads = 1 if budget is None else threads
         compile_once()
 
     def solve(self, scenario: Scenario) -> Plan:
@@ -96,34 +104,58 @@ class EilsSolver:
         Raises:
             PlanError: if `plan` does not fit `scenario`.
         """
-        return _improve(scenario, plan, method, self._seed, self._budget, self._config)
+        begun = time.perf_counter()
+        problem = make_problem(scenario)
+
+        def search(number: int) -> Tours:
+            rng = np.random.default_rng((self._seed, number) if number else self._seed)
+            return _search(problem, tours_of(problem, scenario, plan), rng, begun, self._budget, self._config)
+
+        if self._threads == 1:
+            best = search(0)
+        else:
+            with ThreadPoolExecutor(self._threads) as pool:
+                found = list(pool.map(search, range(self._threads)))
+            best = max(found, key=worth)
+        if verify(scenario, plan).completed > best.size.sum():  # one late visit, dropped, made another late by rounding
+            return Plan(plan.routes, scenario.name, method)
+        return plan_of(best, scenario, method)
+
+
+def worth(tours: Tours) -> tuple[int, float]:
+    """The greater, the better: visits, then time saved."""
+    return int(tours.size.sum()), -total_time(tours)
 
 
 @cache
 def compile_once() -> None:
     """Compile the search, so that no plan has to wait for it."""
-    scenario = smallest_scenario()
-    _improve(scenario, Plan(((),)), "", 0, None, EilsConfig())
+    problem = make_problem(smallest_scenario())
+    worth(_search(problem, empty_tours(problem), np.random.default_rng(0), 0.0, None, EilsConfig()))
 
 
-def _improve(scenario: Scenario, plan: Plan, method: str, seed: int, budget: float | None, config: EilsConfig) -> Plan:
-    begun = time.perf_counter()
-    problem = make_problem(scenario)
-    shift, weight = np.empty(problem.work.shape), np.ones(scenario.num_tasks)
-    tours = tours_of(problem, scenario, plan)
-    fill(problem, tours, shift, np.ones(scenario.num_robots, dtype=np.bool_), weight)
+def _search(
+    problem: Problem, tours: Tours, rng: np.random.Generator, begun: float, budget: float | None, config: EilsConfig
+) -> Tours:
+    """The best tours that come of some; these are changed."""
+    shift, weight = np.empty(problem.work.shape), np.ones(len(problem.deadline))
+    fill(problem, tours, shift, np.ones(len(problem.speed), dtype=np.bool_), weight)
     visits = int(tours.size.sum())
     if visits == 0:
-        return plan_of(tours, scenario, method)
+        return tours
     trial, best = empty_tours(problem), empty_tours(problem)
     copy_tours(tours, trial)
     copy_tours(tours, best)
     visit_time = total_time(tours) / visits
-    rng = np.random.default_rng(seed)
-    iterations = max(config.iterations_a_task * scenario.num_tasks, config.least_iterations)
+    iterations = max(config.iterations_a_task * len(problem.deadline), config.least_iterations)
     done, share = 0, 0.0
     while share < 1.0:
-        chunk = CHUNK if budget is not None else min(CHUNK, iterations - done)
+        if budget is None:
+            chunk = min(CHUNK, iterations - done)
+        elif share == 0.0:
+            chunk = 1  # which tells the pace
+        else:
+            chunk = min(CHUNK, int(done / share * min(1.0 / LOOKS, 1.0 - share)) + 1)
         temperature = visit_time * config.hot * (config.cold / config.hot) ** share
         anneal(
             problem, tours, trial, best, shift, weight, chunk, temperature, config.removals, config.noise,
@@ -131,12 +163,10 @@ def _improve(scenario: Scenario, plan: Plan, method: str, seed: int, budget: flo
         )  # fmt: skip
         done += chunk
         share = done / iterations if budget is None else (time.perf_counter() - begun) / budget
-    if verify(scenario, plan).completed > best.size.sum():  # a late visit, dropped, made another one late by rounding
-        return Plan(plan.routes, scenario.name, method)
-    return plan_of(best, scenario, method)
+    return best
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def anneal(
     problem: Problem,
     tours: Tours,
@@ -175,7 +205,8 @@ def anneal(
         changed[:] = False
         remove_strings(problem, trial, changed, removals, rng)
         for task in range(n):
-            weight[task] = 1.0 + noise * rng.random()
+            if trial.robot[task] < 0:
+                weight[task] = 1.0 + noise * rng.random()
         fill(problem, trial, shift, changed, weight)
         new_value = reward * trial.size.sum() - total_time(trial)
         if new_value > value + temperature * math.log(1.0 - rng.random()):
@@ -194,7 +225,7 @@ def anneal(
             trial.robot[:] = tours.robot
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def remove_strings(
     problem: Problem, tours: Tours, changed: npt.NDArray[np.bool_], removals: float, rng: np.random.Generator
 ) -> None:
@@ -226,7 +257,7 @@ def remove_strings(
             break
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def total_time(tours: Tours) -> float:
     """The time until each robot is through with its tour, summed over the robots."""
     total = 0.0

@@ -66,7 +66,7 @@ def _solve(scenario: Scenario, budget: float | None) -> Plan:
     return plan_of(best, scenario, "ils")
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def search(
     problem: Problem, tours: Tours, best: Tours, shift: FloatArray, state: npt.NDArray[np.int64], rounds: int
 ) -> None:
@@ -95,7 +95,7 @@ def search(
             state[COUNT] = 1
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def shake(problem: Problem, tours: Tours, start: int, count: int) -> None:
     """In every tour remove `count` consecutive visits from position `start` on, going on at its beginning."""
     for robot in range(len(tours.size)):

@@ -11,7 +11,7 @@ from mrta_zoo.policies.local_search.tours import Tours, insert
 from mrta_zoo.scenario import FloatArray
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def fill(
     problem: Problem, tours: Tours, shift: FloatArray, open_tours: npt.NDArray[np.bool_], weight: FloatArray
 ) -> None:
@@ -20,93 +20,152 @@ def fill(
     With equal scores for all tasks, the greatest score² / Shift of ILS is the least Shift. Ties go to the lowest
     robot, then the lowest task.
 
+    An insertion takes a leg from a tour, gives it two, and leaves less room at all others. So what was looked up stays
+    a lower bound if the two are looked up as well, and only what a bound says is best must be looked up once more.
+
     Args:
         problem: the scenario.
         tours: is filled.
-        shift: (M, N) scratch space, for the least Shift of each task in each tour.
+        shift: (M, N) scratch space, for a lower bound of the least Shift of each task in each tour.
         open_tours: (M,) the tours that may get tasks.
         weight: (N,) > 0, what the Shift of each task is multiplied by.
     """
     m = len(problem.speed)
     best_task, best_value = np.full(m, -1), np.full(m, np.inf)
-    for robot in range(m):
-        if open_tours[robot]:
-            _look_up(problem, tours, shift, robot)
-            best_task[robot], best_value[robot] = _choose(tours, shift, robot, weight)
-    while True:
-        winner = int(best_value.argmin())
-        if best_value[winner] == np.inf:
-            break
-        task = best_task[winner]
-        inserted = insert(problem, tours, task, winner, _best_position(problem, tours, task, winner))
-        position = 0
-        while not inserted and position <= tours.size[winner]:  # the look-up was wrong by a rounding error
+    place = np.empty(shift.shape, dtype=np.int64)
+    over = False
+    while not over:
+        failed, over = False, True
+        free = np.flatnonzero(tours.robot < 0)
+        unvisited = len(free)
+        for robot in range(m):
+            if open_tours[robot]:
+                for index in range(unvisited):
+                    task = free[index]
+                    place[robot, task], shift[robot, task] = _best_position(problem, tours, task, robot)
+                best_task[robot], best_value[robot] = _choose(shift, robot, weight, free, unvisited)
+        while True:
+            winner = int(best_value.argmin())
+            if best_value[winner] == np.inf:
+                break
+            task = best_task[winner]
+            position, least = _best_position(problem, tours, task, winner)
+            if least > shift[winner, task]:  # there is less room than there was
+                place[winner, task], shift[winner, task] = position, least
+                best_task[winner], best_value[winner] = _choose(shift, winner, weight, free, unvisited)
+                continue
             inserted = insert(problem, tours, task, winner, position)
-            position += 1
-        if inserted:
-            _look_up(problem, tours, shift, winner)
-        else:
-            shift[winner, task] = np.inf
-        for other in range(m):
-            if other == winner or (inserted and best_task[other] == task):
-                best_task[other], best_value[other] = _choose(tours, shift, other, weight)
+            if not inserted:  # the look-up was wrong by a rounding error
+                failed = True
+                position = -1
+                while not inserted and position < tours.size[winner]:
+                    position += 1
+                    inserted = insert(problem, tours, task, winner, position)
+            if inserted:
+                over = not failed  # what has failed may fit now, by rounding: look everything up once more
+                unvisited = _forget(free, unvisited, task)
+                _look_up_legs(problem, tours, shift, place, winner, position, free, unvisited)
+            else:
+                shift[winner, task] = np.inf
+            for other in range(m):
+                if other == winner or (inserted and best_task[other] == task):
+                    best_task[other], best_value[other] = _choose(shift, other, weight, free, unvisited)
 
 
-@njit(cache=True)
-def _choose(tours: Tours, shift: FloatArray, robot: int, weight: FloatArray) -> tuple[int, float]:
-    """The unvisited task with the least weighted Shift in a tour, and that; (-1, inf) if none fits."""
+@njit(cache=True, nogil=True)
+def _forget(free: npt.NDArray[np.int64], unvisited: int, task: int) -> int:
+    """Take `task` from the first `unvisited` of `free`, and give how many are left."""
+    position = 0
+    while free[position] != task:
+        position += 1
+    for index in range(position, unvisited - 1):
+        free[index] = free[index + 1]
+    return unvisited - 1
+
+
+@njit(cache=True, nogil=True)
+def _choose(
+    shift: FloatArray, robot: int, weight: FloatArray, free: npt.NDArray[np.int64], unvisited: int
+) -> tuple[int, float]:
+    """Of the first `unvisited` of `free`, the least weighted Shift's task, and that; (-1, inf) if none fits."""
     chosen, least = -1, np.inf
-    for task in range(len(weight)):
+    for index in range(unvisited):
+        task = free[index]
         value = shift[robot, task] * weight[task]
-        if value < least and tours.robot[task] < 0:
+        if value < least:
             chosen, least = task, value
     return chosen, least
 
 
-@njit(cache=True)
-def _look_up(problem: Problem, tours: Tours, shift: FloatArray, robot: int) -> None:
-    """Find the least Shift of every task in a tour, inf where it does not fit.
+@njit(cache=True, nogil=True)
+def _look_up_legs(
+    problem: Problem,
+    tours: Tours,
+    shift: FloatArray,
+    place: npt.NDArray[np.int64],
+    robot: int,
+    first: int,
+    free: npt.NDArray[np.int64],
+    unvisited: int,
+) -> None:
+    """Bring a tour's rows of `shift` and `place` up to date with a visit inserted at position `first`.
 
-    What comes out for tasks that are visited already has no meaning.
+    Args:
+        problem: the scenario.
+        tours: the tours.
+        shift: (M, N) lower bounds of the least Shift of each task.
+        place: (M, N) the position that each bound is for.
+        robot: whose tour.
+        first: where its new visit is.
+        free: of which the first `unvisited` are looked at.
+        unvisited: how many.
     """
-    least, work, latest = shift[robot], problem.work[robot], problem.latest[robot]
-    pace, size = 1.0 / problem.speed[robot], tours.size[robot]
-    place, ready = len(work) + robot, 0.0
-    least[:] = np.inf
-    tolerance = TOLERANCE * tours.finish[robot, size - 1] if size > 0 else 0.0
-    # Tasks in the inner loop, no branches and few arrays there: that is compiled to vector instructions.
-    for position in range(size):
-        following = tours.tasks[robot, position]
-        to, onward = problem.distance[place], problem.distance[following]
-        leg, slack = tours.leg[robot, position], tours.max_shift[robot, position] + tolerance
-        for task in range(len(work)):
-            new = max((to[task] + onward[task]) * pace + work[task] - leg, 0.0)
-            fits = (ready + to[task] * pace <= latest[task]) & (new <= slack)
-            least[task] = min(least[task], new if fits else np.inf)
-        place, ready = following, tours.finish[robot, position]
-    to = problem.distance[place]
-    for task in range(len(work)):
-        fits = ready + to[task] * pace <= latest[task]
-        least[task] = min(least[task], to[task] * pace + work[task] if fits else np.inf)
+    distance, pace, size = problem.distance, 1.0 / problem.speed[robot], tours.size[robot]
+    before, ready = len(problem.deadline) + robot, 0.0
+    if first > 0:
+        before, ready = tours.tasks[robot, first - 1], tours.finish[robot, first - 1]
+    new, new_leg, finish = tours.tasks[robot, first], tours.leg[robot, first], tours.finish[robot, first]
+    tolerance = TOLERANCE * tours.finish[robot, size - 1]
+    slack = tours.max_shift[robot, first] + tolerance
+    after, after_leg, after_slack = -1, 0.0, np.inf
+    if first + 1 < size:
+        after, after_leg = tours.tasks[robot, first + 1], tours.leg[robot, first + 1]
+        after_slack = tours.max_shift[robot, first + 1] + tolerance
+    for index in range(unvisited):
+        task = free[index]
+        if place[robot, task] == first:  # on the leg that is no more
+            place[robot, task], shift[robot, task] = _best_position(problem, tours, task, robot)
+            continue
+        if place[robot, task] > first:
+            place[robot, task] += 1
+        work, latest = problem.work[robot, task], problem.latest[robot, task]
+        to, between = distance[before, task] * pace, distance[new, task] * pace
+        least = max(to + between + work - new_leg, 0.0)
+        if least < shift[robot, task] and least <= slack and ready + to <= latest:
+            place[robot, task], shift[robot, task] = first, least
+        onward = distance[after, task] * pace if after >= 0 else 0.0
+        least = max(between + onward + work - after_leg, 0.0)
+        if least < shift[robot, task] and least <= after_slack and finish + between <= latest:
+            place[robot, task], shift[robot, task] = first + 1, least
 
 
-@njit(cache=True)
-def _best_position(problem: Problem, tours: Tours, task: int, robot: int) -> int:
-    """The position in a tour at which a task that fits there has the least Shift."""
+@njit(cache=True, nogil=True)
+def _best_position(problem: Problem, tours: Tours, task: int, robot: int) -> tuple[int, float]:
+    """The position in a tour at which a task has the least Shift, and that; inf if it fits nowhere."""
+    between = problem.distance
     pace, size = 1.0 / problem.speed[robot], tours.size[robot]
     work, latest = problem.work[robot, task], problem.latest[robot, task]
-    place, ready = len(problem.deadline) + robot, 0.0
-    least = np.inf
-    best: int = size
+    tolerance = TOLERANCE * tours.finish[robot, size - 1] if size > 0 else 0.0
+    best, least = -1, np.inf
+    to, ready = between[len(problem.deadline) + robot, task] * pace, 0.0
     for position in range(size):
-        following = tours.tasks[robot, position]
-        to, onward = problem.distance[place, task], problem.distance[following, task]
-        shift = max((to + onward) * pace + work - tours.leg[robot, position], 0.0)
-        fits = shift <= tours.max_shift[robot, position] + TOLERANCE * tours.finish[robot, size - 1]
-        if fits and ready + to * pace <= latest and shift < least:
-            least, best = shift, position
-        place, ready = following, tours.finish[robot, position]
-    to = problem.distance[place, task] * pace
+        if ready + to > latest:  # nor is it in time after any later visit
+            return best, least
+        onward = between[task, tours.tasks[robot, position]] * pace
+        shift = max(to + onward + work - tours.leg[robot, position], 0.0)
+        if shift < least and shift <= tours.max_shift[robot, position] + tolerance:
+            best, least = position, shift
+        to, ready = onward, tours.finish[robot, position]
     if ready + to <= latest and to + work < least:
-        best = size
-    return best
+        best, least = size, to + work
+    return best, least

@@ -14,7 +14,7 @@ from mrta_zoo import Scenario, mrta_v0
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import UniformGenerator
-from mrta_zoo.policies import neural
+from mrta_zoo.policies import decoding, neural, rollout
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.capam.inputs import Tasks
 from mrta_zoo.policies.capam.neighbourhood import Neighbourhood
@@ -135,8 +135,9 @@ def test_a_budget_is_kept(monkeypatch: pytest.MonkeyPatch, pace: float, budget: 
         batches.append(samples)
         return roll_out(*arguments, samples=samples, **options)
 
-    monkeypatch.setattr(neural, "roll_out", timed_roll_out)
-    monkeypatch.setattr(neural, "time", SimpleNamespace(perf_counter=lambda: now))
+    monkeypatch.setattr(decoding, "roll_out", timed_roll_out)
+    for module in (neural, decoding, rollout):
+        monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=lambda: now))
     scenario = UniformGenerator(tasks=(8, 8), robots=(2, 2))(np.random.default_rng(0))
     policy = NeuralPolicy(build_network(SMALL, "shared", 1, seed=0), PolicyInfo(network=SMALL))
     policy.solve(scenario, decode="sample", budget=budget)

@@ -155,6 +155,37 @@ def test_after_filling_nothing_fits(scenario: Scenario) -> None:
                 assert verify(scenario, Plan.of(longer)).completed <= completed
 
 
+def filled_by_hand(scenario: Scenario, weight: np.ndarray) -> list[list[int]]:
+    """Routes of the insertion step, every Shift computed anew from the verifier's times before each insertion."""
+    routes: list[list[int]] = [[] for _ in range(scenario.num_robots)]
+    while True:
+        before = verify(scenario, Plan.of(routes))
+        options = []
+        for robot, old in enumerate(routes):
+            end = before.schedule[robot][-1].finish if old else 0.0
+            for task in set(range(scenario.num_tasks)) - {task for each in routes for task in each}:
+                for position in range(len(old) + 1):
+                    tried = [*routes[:robot], [*old[:position], task, *old[position:]], *routes[robot + 1 :]]
+                    after = verify(scenario, Plan.of(tried))
+                    if after.completed == before.completed + 1:
+                        shift = after.schedule[robot][-1].finish - end
+                        options.append((shift * weight[task], robot, task, position))
+        if not options:
+            return routes
+        _, robot, task, position = min(options)
+        routes[robot].insert(position, task)
+
+
+def test_filling_takes_the_least_weighted_shift_each_time() -> None:
+    for seed in range(12):
+        scenario = small_scenario(seed, tasks=14, robots=3, latest=160.0)
+        weight = np.random.default_rng(seed).uniform(1, 2, 14)
+        problem = make_problem(scenario)
+        tours = empty_tours(problem)
+        fill(problem, tours, np.empty(problem.work.shape), np.ones(3, dtype=bool), weight)
+        assert [route(tours, robot) for robot in range(3)] == filled_by_hand(scenario, weight)
+
+
 @pytest.mark.parametrize("solver", [IlsSolver(), EilsSolver(), EilsSolver(seed=3)], ids=["ils", "eils", "eils 3"])
 def test_exact_ties_are_used_and_nothing_is_late(solver: IlsSolver | EilsSolver) -> None:
     for seed in range(30):

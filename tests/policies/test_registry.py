@@ -74,11 +74,12 @@ def test_shipped_policies_are_methods() -> None:
     ("options", "complaint"),
     [
         ({"seed": -1}, "seed is -1"),
-        ({"decode": "beam"}, "decode is 'beam'; expected one of greedy, sample"),
+        ({"decode": "beams"}, "decode is 'beams'; expected one of greedy, sample, augment, beam"),
         ({"samples": 0}, "samples is 0"),
         ({"budget": 0.0}, "budget is 0; expected a number of seconds > 0"),
         ({"budget": float("nan")}, "budget is nan"),
         ({"mask_rule": "any"}, "mask_rule is 'any'"),
+        ({"threads": 0}, "threads is 0; expected a whole number from 1 to"),
     ],
 )
 def test_bad_options(options: dict[str, object], complaint: str) -> None:
