@@ -13,7 +13,7 @@ from mrta_zoo.verify import verify
 
 LEAST_BUDGET = 1e-3
 """Seconds that are left for the search where the method has taken them all."""
-METHOD_SHARE = 0.3
+METHOD_SHARE = 0.2
 """Of the budget, what the method may take if it can be hurried."""
 
 

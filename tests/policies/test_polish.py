@@ -66,14 +66,14 @@ def spied(monkeypatch: pytest.MonkeyPatch, slow: Slow) -> list[tuple[float | Non
 
 
 def test_a_method_in_time_gives_the_search_its_plan_and_what_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
-    slow, scenario = Slow(0.5), small_scenario()
+    slow, scenario = Slow(0.25), small_scenario()
     assert isinstance(slow, Hurried)
     searches = spied(monkeypatch, slow)
     plan = PolishedSolver(slow, 0, 2.0).solve(scenario)
     assert plan.method == "slow+polish"
     assert slow.allowed == [METHOD_SHARE * 2.0]
     visits = sum(map(len, make_solver("edf").solve(scenario).routes))
-    assert searches == [(1.5, visits)]
+    assert searches == [(1.75, visits)]
 
 
 def test_a_method_that_takes_too_long_is_done_without_and_not_asked_again(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -128,9 +128,9 @@ def test_the_best_of_several_searches_counts(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_other_threads_search_while_the_method_plans(monkeypatch: pytest.MonkeyPatch) -> None:
-    scenario, slow = small_scenario(), Slow(0.5)
+    scenario, slow = small_scenario(), Slow(0.25)
     searches = spied(monkeypatch, slow)
     plan = PolishedSolver(slow, 0, 2.0, threads=2).solve(scenario)
     assert plan.method == "slow+polish"
     visits = sum(map(len, make_solver("edf").solve(scenario).routes))
-    assert sorted(searches) == [(1.5, visits), (2.0, 0)]
+    assert sorted(searches) == [(1.75, visits), (2.0, 0)]
