@@ -109,6 +109,8 @@ def read_config(path: Path) -> TrainConfig:
         values: dict[str, Any] = json.loads(path.read_text())
         network = NetworkConfig(**_with_tuples(values.pop("network", {})))
         return TrainConfig(network=network, **_with_tuples(values))
+    except ConfigError:
+        raise
     except (OSError, ValueError, TypeError, AttributeError) as error:
         raise ConfigError(f"{path}: not a configuration ({error})") from None
 

@@ -16,8 +16,8 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies import neural
 from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.policies.capam.neighbourhood import Neighbourhood
 from mrta_zoo.policies.capam.inputs import Tasks
+from mrta_zoo.policies.capam.neighbourhood import Neighbourhood
 from mrta_zoo.policies.neural import NeuralPolicy, load_policy
 from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.rollout import Rollout, roll_out

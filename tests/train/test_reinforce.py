@@ -17,12 +17,13 @@ from mrta_zoo.policies.capam.inputs import Moments, Tasks
 from mrta_zoo.policies.rollout import roll_out
 from mrta_zoo.policies.sharing import build_network
 from mrta_zoo.train.config import TrainConfig
-from mrta_zoo.train.reinforce import Reinforce, Validation, surrogate_loss
+from mrta_zoo.train.reinforce import Reinforce, Validation, accumulate_gradients
 
 SMALL = NetworkConfig(embedding=32, heads=4)
 TINY = TrainConfig(
     network=SMALL,
-    tasks=10,
+    tasks=(10,),
+    reference_tasks=10,
     min_robots=1,
     max_robots=3,
     scenarios=4,
@@ -34,9 +35,9 @@ TINY = TrainConfig(
 
 
 @pytest.mark.parametrize("sharing", ["shared", "independent"])
-@pytest.mark.parametrize("decision_features", [False, True])
-def test_surrogate_gradient_is_that_of_decisions_taken_one_by_one(sharing: str, decision_features: bool) -> None:
-    config = replace(SMALL, decision_features=decision_features)
+@pytest.mark.parametrize("decoder", ["attention", "candidates"])
+def test_accumulated_gradient_is_that_of_decisions_taken_one_by_one(sharing: str, decoder: str) -> None:
+    config = replace(SMALL, decoder=decoder, decision_layers=2, candidates=15, peers=2)
     network = build_network(config, sharing, robots=4, seed=0)  # type: ignore[arg-type]
     rng = np.random.default_rng(0)
     # Missions of very different lengths, so that some are dropped on the way.
@@ -52,7 +53,7 @@ def test_surrogate_gradient_is_that_of_decisions_taken_one_by_one(sharing: str, 
         keep_plans=True,
     )
     advantage = torch.randn(3, 3, generator=torch.Generator().manual_seed(1))
-    surrogate_loss(network, scenarios, rollout, advantage).backward()
+    mean = accumulate_gradients(network, scenarios, rollout.segments, advantage)
     gradients = {name: p.grad.clone() for name, p in network.named_parameters() if p.grad is not None}
 
     network.zero_grad(set_to_none=True)
@@ -71,8 +72,10 @@ def test_surrogate_gradient_is_that_of_decisions_taken_one_by_one(sharing: str, 
         log_prob = log_prob + torch.where(mission.done, 0.0, scores)
         mission.step(action)
     torch.testing.assert_close(log_prob.detach(), rollout.log_prob, rtol=1e-4, atol=1e-4)
-    (advantage.flatten() * log_prob).mean().backward()
-    assert gradients
+    surrogate = (advantage.flatten() * log_prob).mean()
+    surrogate.backward()
+    assert mean == pytest.approx(float(surrogate.detach()), rel=1e-4, abs=1e-5)
+    assert gradients.keys() == {name for name, p in network.named_parameters() if p.grad is not None}
     for name, parameter in network.named_parameters():
         if parameter.grad is not None:
             torch.testing.assert_close(gradients[name], parameter.grad, rtol=1e-3, atol=1e-5, msg=name)
@@ -109,10 +112,10 @@ class Detour:
         {"baseline": "rollout", "samples": 1, "scenarios": 64},
         {"sharing": "independent"},
         {"network": NetworkConfig(encoder="attention", embedding=32, heads=4, layers=2)},
-        {"network": NetworkConfig(embedding=32, heads=4, decision_features=True)},
+        {"network": NetworkConfig(embedding=32, heads=4, decoder="candidates", decision_layers=1), "updates": 40},
         {"objective": "cost", "entropy": 0.01},
     ],
-    ids=["capam", "rollout-baseline", "independent", "am", "decision-features", "cost-and-entropy"],
+    ids=["capam", "rollout-baseline", "independent", "am", "candidates", "cost-and-entropy"],
 )
 def test_learns_to_pass_the_near_task_by(change: dict[str, object]) -> None:
     config = replace(TINY, max_robots=1, scenarios=16, updates=60, epoch=60, learning_rate=3e-3, clip_norm=10.0)
