@@ -96,7 +96,7 @@ def read_plans(config: TrainConfig, folder: Path, most: int) -> list[ExpertPlan]
                 index, robots, lengths, tasks = (file[name] for name in ("index", "robots", "lengths", "tasks"))
             numbered = list(zip(index.tolist(), _split(robots, lengths, tasks), strict=True))
         except UNREADABLE as error:
-            raise ConfigError(f"{path}: not a readable file of plans ({error})") from None
+            raise ConfigError(f"{path}: not a readable file of plans ({type(error).__name__})") from None
         for number, routes in numbered:
             if len(plans) == most:
                 return plans

@@ -68,18 +68,13 @@ def test_plans_of_another_configuration_are_refused(tmp_path: Path, change: dict
 
 @pytest.mark.parametrize("wrong", ["late", "twice", "unknown", "negative"])
 def test_plans_that_nobody_could_follow_are_refused(tmp_path: Path, wrong: str) -> None:
-    make_shard(CONFIG, 0, tmp_path)
-    with np.load(tmp_path / "0000000.npz") as file:
-        arrays = {name: file[name] for name in file.files}
-    longest = int(arrays["lengths"][: int(arrays["robots"][0])].argmax())
-    start, end = np.cumsum(np.concatenate(([0], arrays["lengths"])))[[longest, longest + 1]]
-    assert end - start >= 2
-    tasks = arrays["tasks"]
-    if wrong == "late":  # Robot 0 of plan 0 gets all of that plan's tasks, and the others none.
-        count = int(arrays["robots"][0])
-        arrays["lengths"][:count] = [arrays["lengths"][:count].sum(), *[0] * (count - 1)]
-    else:
-        tasks[start] = {"twice": tasks[start + 1], "unknown": 9, "negative": -1}[wrong]
+    scenario = expert_scenario(CONFIG, 0)
+    tasks = np.argsort(-scenario.deadline)  # the most urgent last
+    if wrong != "late":
+        tasks = np.array([0, {"twice": 0, "unknown": scenario.num_tasks, "negative": -1}[wrong]])
+    # Robot 0 does these, and the others nothing.
+    lengths = [len(tasks), *[0] * (scenario.num_robots - 1)]
+    arrays = {"index": [0], "robots": [scenario.num_robots], "lengths": lengths, "tasks": tasks}
     np.savez(tmp_path / "0000000.npz", **arrays)
     with pytest.raises(ConfigError, match=r"0000000.npz: plan 0 does not fit its scenario"):
         read_plans(CONFIG, tmp_path, 100)

@@ -162,7 +162,7 @@ class Detour:
             "learning_rate": 1e-2,
         },
         {"objective": "cost", "entropy": 0.01},
-    ],  # fmt: skip
+    ],
     ids=["capam", "rollout-baseline", "independent", "am", "candidates", "cost-and-entropy"],
 )
 def test_learns_to_pass_the_near_task_by(change: dict[str, object]) -> None:
