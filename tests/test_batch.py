@@ -192,3 +192,38 @@ def test_select_copies_missions_as_they_stand() -> None:
     chosen.step(torch.tensor([1, 0, 2]))
     assert chosen.taken_by.tolist() == [[0, 1, -1], [0, 0, -1], [0, -1, 1]]
     assert mission.taken_by.tolist() == [[-1, 0, -1], [0, -1, -1]], "the original stays as it was"
+
+
+def test_missions_that_are_not_to_step_stay_as_they_are() -> None:
+    mission = BatchMission(ScenarioBatch.of([LARGE, LARGE, SMALL]), "active")
+    before = {name: value[1].clone() for name, value in vars(mission).items() if isinstance(value, torch.Tensor)}
+    mission.step(torch.tensor([0, 1, 1]), where=torch.tensor([True, False, True]))
+    for name, value in before.items():
+        assert torch.equal(getattr(mission, name)[1], value), name
+    # LARGE: robot 0 is at task 0 until 5 + 2/2 = 6, robot 1 is next. SMALL: task 1 at (0, 0) until 3.
+    assert mission.ready.tolist() == [[6, 0], [0, 0], [3, 0]]
+    assert mission.actor.tolist() == [1, 0, 0]
+    assert mission.taken_by.tolist() == [[0, -1, -1], [-1, -1, -1], [-1, 0, -1]]
+    mission.step(torch.tensor([1, 1, 0]), where=torch.tensor([False, True, False]))
+    assert mission.ready.tolist() == [[6, 0], [10, 0], [3, 0]]
+    assert mission.taken_by.tolist() == [[0, -1, -1], [-1, 0, -1], [-1, 0, -1]]
+
+
+def test_a_robot_retires_though_it_could_go_on() -> None:
+    mission = BatchMission(ScenarioBatch.of([LARGE, LARGE, SMALL]), "active")
+    mission.retire(torch.tensor([True, False, True]))
+    # Robot 0 of the first is out, robot 1 acts; the third had only one robot, whose mission is over where it began.
+    assert mission.actor.tolist() == [1, 0, -1]
+    assert mission.retired.tolist() == [[True, False], [False, False], [True, True]]
+    assert mission.time.tolist() == [0, 0, 0]
+    mission.step(torch.tensor([0, 0, 0]))
+    # Robot 1 of the first: 5/5 + 2/1 = 3. It is the only one left there.
+    assert mission.actor.tolist() == [1, 1, -1]
+    assert mission.time.tolist() == [3, 0, 0]
+    mission.retire(torch.tensor([True, False, False]))
+    assert mission.done.tolist() == [True, False, True]
+    assert mission.time.tolist() == [3, 0, 0], "the clock ends with the last task"
+    # The first: task 0 at 3 <= 6; the others, which nobody took, count from their deadlines, 12/12 + 9/9.
+    assert mission.cost().tolist()[0] == 2
+    assert mission.plans()[0] == Plan(((), (0,)))
+    assert mission.plans()[2] == Plan(((),))

@@ -116,6 +116,8 @@ def read_config(path: Path) -> TrainConfig:
         values = values.get("config", values)  # the history that `train` leaves holds it, too
         network = NetworkConfig(**_with_tuples(values.pop("network", {})))
         return TrainConfig(network=network, **_with_tuples(values))
+    except ConfigError:
+        raise
     except (OSError, ValueError, TypeError, AttributeError) as error:
         raise ConfigError(f"{path}: not a configuration ({error})") from None
 

@@ -5,6 +5,8 @@ A plan is stored as its routes alone: its scenario follows from the seed and the
 
 from __future__ import annotations
 
+import io
+import struct
 import zipfile
 import zlib
 from collections.abc import Sequence
@@ -28,7 +30,17 @@ ITERATIONS_A_TASK = 24
 SHARD = 500
 """Plans a file."""
 
-UNREADABLE = (OSError, ValueError, KeyError, EOFError, NotImplementedError, zipfile.BadZipFile, zlib.error)
+UNREADABLE = (
+    OSError,
+    ValueError,
+    KeyError,
+    TypeError,
+    EOFError,
+    RuntimeError,
+    struct.error,
+    zipfile.BadZipFile,
+    zlib.error,
+)
 """What NumPy raises of a damaged file."""
 
 Routes = tuple[tuple[int, ...], ...]
@@ -85,11 +97,11 @@ def read_plans(config: TrainConfig, folder: Path, most: int) -> list[ExpertPlan]
     plans: list[ExpertPlan] = []
     for path in sorted(folder.glob("*.npz")):
         try:
-            with np.load(path, allow_pickle=False) as file:
+            with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
                 index, robots, lengths, tasks = (file[name] for name in ("index", "robots", "lengths", "tasks"))
             numbered = list(zip(index.tolist(), _split(robots, lengths, tasks), strict=True))
         except UNREADABLE as error:
-            raise ConfigError(f"{path}: not a readable file of plans ({error})") from None
+            raise ConfigError(f"{path}: not a readable file of plans ({type(error).__name__})") from None
         for number, routes in numbered:
             if len(plans) == most:
                 return plans

@@ -29,8 +29,11 @@ CONFIGS = {
     "capam-p1-k3-2layers": replace(SMALL, moments=1, hops=3, layers=2),
     "am-2layers": replace(SMALL, encoder="attention", layers=2),
     "only-the-paper's-features": replace(SMALL, node_features=("x", "y", "deadline")),
-    "capam-plus": replace(SMALL, decision_features=True),
-    "am-plus": replace(SMALL, encoder="attention", decision_features=True),
+    "capam-plus": replace(SMALL, decoder="candidates"),
+    "am-plus": replace(SMALL, encoder="attention", decoder="candidates"),
+    "none-plus": replace(SMALL, encoder="none", decoder="candidates", decision_layers=2),
+    "capam-plus-without-layers": replace(SMALL, decoder="candidates", decision_layers=0),
+    "capam-plus-few-candidates": replace(SMALL, decoder="candidates", candidates=5, peers=1, decision_layers=1),
 }
 GENERATOR = Mixture((TaptcGenerator(tasks=(9, 20), robots=(1, 4)), UniformGenerator(tasks=(9, 20), robots=(1, 4))))
 
@@ -42,7 +45,7 @@ def draw(count: int, seed: int = 0) -> list[Scenario]:
 
 def network_of(config: NetworkConfig, sharing: str = "shared", seed: int = 3) -> torch.nn.Module:
     network = build_network(config, sharing, robots=4, seed=seed)  # type: ignore[arg-type]
-    with torch.no_grad():  # so that decision-time features, whose last layer starts at 0, count too
+    with torch.no_grad():  # so that the candidate decoder, whose last layer starts at 0, counts too
         for parameter in network.parameters():
             if parameter.abs().max() == 0:
                 parameter.normal_(std=0.3, generator=torch.Generator().manual_seed(seed))
@@ -278,6 +281,10 @@ def test_initial_weights_come_from_the_seed_alone() -> None:
         ({"moments": 0}, r"moments is 0; expected a whole number from 1 to 16"),
         ({"hops": -1}, r"hops is -1; expected a whole number from 0 to 16"),
         ({"tanh_clip": 0.0}, r"tanh_clip is 0.0; expected a number > 0"),
+        ({"decoder": "features"}, r"decoder is 'features'; expected attention or candidates"),
+        ({"candidates": 0}, r"candidates is 0; expected a whole number from 1 to 10000"),
+        ({"peers": -1}, r"peers is -1; expected a whole number from 0 to 10000"),
+        ({"decision_layers": -1}, r"decision_layers is -1; expected a whole number from 0 to 64"),
     ],
 )
 def test_bad_architectures_are_refused(change: dict[str, object], sentence: str) -> None:

@@ -24,8 +24,8 @@ from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.reinforce import Reinforce, Validation
 
 TINY = TrainConfig(
-    network=NetworkConfig(embedding=32, heads=4), tasks=10, min_robots=1, max_robots=3, scenarios=4, samples=4,
-    updates=6, epoch=2, validation_scenarios=8,
+    network=NetworkConfig(embedding=32, heads=4), tasks=(10,), reference_tasks=10, min_robots=1, max_robots=3,
+    scenarios=4, samples=4, updates=6, epoch=2, validation_scenarios=8,
 )  # fmt: skip
 
 
@@ -61,7 +61,7 @@ def test_resumed_run_ends_in_the_same_bits(tmp_path: Path, baseline: str, sharin
 
 def test_killed_run_resumes_to_the_same_bits(tmp_path: Path) -> None:
     arguments = shlex.split(
-        "--preset smoke --tasks 10 --updates 12 --epoch 1 --scenarios 4 --validation-scenarios 8 "
+        "--preset smoke --tasks 10 --reference-tasks 10 --updates 12 --epoch 1 --scenarios 4 --validation-scenarios 8 "
         "--embedding 32 --heads 4 --threads 1"
     )
 
@@ -130,6 +130,7 @@ def test_a_folder_holds_one_run(tmp_path: Path) -> None:
 def _saved(tmp_path: Path) -> Path:
     run = checkpoint.start(tmp_path, TINY)
     run.validate()
+    checkpoint.save(tmp_path, run, 0.0)  # the best so far: there is a policy
     run.step()
     run.validate()
     checkpoint.save(tmp_path, run, 0.0)
@@ -161,7 +162,7 @@ def test_damaged_run_is_told_in_a_sentence(tmp_path: Path, file: str, content: b
     [
         ({"embedding": 64}, r"has shape .*; the architecture needs"),
         ({"moments": 4}, "is missing; the weights belong to another architecture"),
-        ({"decision_features": True}, "is missing; the weights belong to another architecture"),
+        ({"decoder": "candidates"}, "is missing; the weights belong to another architecture"),
         ({"moments": 2}, "has (no place in the architecture|shape)"),
         ({"embeding": 32}, "unknown field 'embeding'"),
         ({"heads": "four"}, r"Expected `int`, got `str`"),

@@ -25,7 +25,7 @@ def test_paper_preset_is_table_1() -> None:
         1,
         8,
     )
-    assert (paper.tasks, paper.min_robots, paper.max_robots, paper.generator) == (100, 2, 7, "uniform")
+    assert (paper.tasks, paper.min_robots, paper.max_robots, paper.generator) == ((100,), 2, 7, "uniform")
 
 
 def test_flags_override_the_preset() -> None:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import torch
+from factories import hopeless_scenario
 
 from mrta_zoo import Scenario
 from mrta_zoo.batch import BatchMission, ScenarioBatch
@@ -17,12 +18,13 @@ from mrta_zoo.policies.capam.inputs import Moments, Tasks
 from mrta_zoo.policies.rollout import roll_out
 from mrta_zoo.policies.sharing import build_network
 from mrta_zoo.train.config import TrainConfig
-from mrta_zoo.train.reinforce import Reinforce, Validation, surrogate_loss
+from mrta_zoo.train.reinforce import Reinforce, Validation, accumulate_gradients
 
 SMALL = NetworkConfig(embedding=32, heads=4)
 TINY = TrainConfig(
     network=SMALL,
-    tasks=10,
+    tasks=(10,),
+    reference_tasks=10,
     min_robots=1,
     max_robots=3,
     scenarios=4,
@@ -34,9 +36,9 @@ TINY = TrainConfig(
 
 
 @pytest.mark.parametrize("sharing", ["shared", "independent"])
-@pytest.mark.parametrize("decision_features", [False, True])
-def test_surrogate_gradient_is_that_of_decisions_taken_one_by_one(sharing: str, decision_features: bool) -> None:
-    config = replace(SMALL, decision_features=decision_features)
+@pytest.mark.parametrize("decoder", ["attention", "candidates"])
+def test_accumulated_gradient_is_that_of_decisions_taken_one_by_one(sharing: str, decoder: str) -> None:
+    config = replace(SMALL, decoder=decoder, decision_layers=2, candidates=15, peers=2)
     network = build_network(config, sharing, robots=4, seed=0)  # type: ignore[arg-type]
     rng = np.random.default_rng(0)
     # Missions of very different lengths, so that some are dropped on the way.
@@ -52,7 +54,7 @@ def test_surrogate_gradient_is_that_of_decisions_taken_one_by_one(sharing: str, 
         keep_plans=True,
     )
     advantage = torch.randn(3, 3, generator=torch.Generator().manual_seed(1))
-    surrogate_loss(network, scenarios, rollout, advantage).backward()
+    mean = accumulate_gradients(network, scenarios, rollout.segments, advantage)
     gradients = {name: p.grad.clone() for name, p in network.named_parameters() if p.grad is not None}
 
     network.zero_grad(set_to_none=True)
@@ -71,11 +73,54 @@ def test_surrogate_gradient_is_that_of_decisions_taken_one_by_one(sharing: str, 
         log_prob = log_prob + torch.where(mission.done, 0.0, scores)
         mission.step(action)
     torch.testing.assert_close(log_prob.detach(), rollout.log_prob, rtol=1e-4, atol=1e-4)
-    (advantage.flatten() * log_prob).mean().backward()
-    assert gradients
+    surrogate = (advantage.flatten() * log_prob).mean()
+    surrogate.backward()
+    assert mean == pytest.approx(float(surrogate.detach()), rel=1e-4, abs=1e-5)
+    assert gradients.keys() == {name for name, p in network.named_parameters() if p.grad is not None}
     for name, parameter in network.named_parameters():
         if parameter.grad is not None:
             torch.testing.assert_close(gradients[name], parameter.grad, rtol=1e-3, atol=1e-5, msg=name)
+
+
+@pytest.mark.parametrize("sharing", ["shared", "independent"])
+@pytest.mark.parametrize("decoder", ["attention", "candidates"])
+def test_accumulated_gradient_is_autograds_of_the_whole_surrogate(sharing: str, decoder: str) -> None:
+    config = replace(SMALL, decoder=decoder, decision_layers=1, candidates=6, peers=2)
+    network = build_network(config, sharing, robots=5, seed=0)  # type: ignore[arg-type]
+    rng = np.random.default_rng(3)
+    generator = UniformGenerator(tasks=20, robots=(1, 3))  # type: ignore[arg-type]
+    scenarios = ScenarioBatch.of([generator(rng) for _ in range(4)])
+    sampling = torch.Generator().manual_seed(2)
+    rollout = roll_out(network, scenarios, samples=3, generator=sampling, keep_segments=True)
+    advantage = torch.randn(4, 3, generator=sampling)
+    mean = accumulate_gradients(network, scenarios, rollout.segments, advantage, entropy=0.3)
+    gradients = {name: p.grad.clone() for name, p in network.named_parameters() if p.grad is not None}
+
+    network.zero_grad(set_to_none=True)
+    encoding = network.encode(Tasks.of_batch(scenarios))
+    surrogate = torch.zeros(())
+    for segment in rollout.segments:
+        log_probs = network(encoding.select(segment.scenarios), segment.moments)  # type: ignore[arg-type]
+        for row, q in segment.live.nonzero().tolist():
+            chosen = log_probs[row, q, segment.actions[row, q]]
+            likely = log_probs[row, q][torch.isfinite(log_probs[row, q])]
+            entropy = -(likely.exp() * likely).sum()
+            weight = advantage[segment.scenarios[row], segment.sample[q]]
+            surrogate = surrogate + (weight * chosen - 0.3 * entropy) / 12  # missions
+    surrogate.backward()
+    assert mean == pytest.approx(float(surrogate.detach()), rel=1e-4, abs=1e-5)
+    # Nothing was decided by the networks of robots 3 and 4, which no scenario has.
+    wanted = {name: p.grad for name, p in network.named_parameters() if p.grad is not None}
+    assert gradients.keys() == wanted.keys()
+    for name, gradient in wanted.items():
+        torch.testing.assert_close(gradients[name], gradient, rtol=1e-3, atol=1e-5, msg=name)
+
+
+def test_without_any_decision_there_is_no_gradient() -> None:
+    network = build_network(SMALL, "shared", 1, seed=0)
+    scenarios = ScenarioBatch.of([hopeless_scenario()])
+    assert accumulate_gradients(network, scenarios, [], torch.ones(1, 2)) == 0
+    assert all(parameter.grad is None for parameter in network.parameters())
 
 
 @pytest.mark.parametrize("baseline", ["samples", "rollout"])
@@ -109,10 +154,16 @@ class Detour:
         {"baseline": "rollout", "samples": 1, "scenarios": 64},
         {"sharing": "independent"},
         {"network": NetworkConfig(encoder="attention", embedding=32, heads=4, layers=2)},
-        {"network": NetworkConfig(embedding=32, heads=4, decision_features=True)},
+        {
+            "network": NetworkConfig(embedding=32, heads=4, decoder="candidates", decision_layers=2),
+            "scenarios": 8,
+            "samples": 8,
+            "updates": 40,
+            "learning_rate": 1e-2,
+        },
         {"objective": "cost", "entropy": 0.01},
     ],
-    ids=["capam", "rollout-baseline", "independent", "am", "decision-features", "cost-and-entropy"],
+    ids=["capam", "rollout-baseline", "independent", "am", "candidates", "cost-and-entropy"],
 )
 def test_learns_to_pass_the_near_task_by(change: dict[str, object]) -> None:
     config = replace(TINY, max_robots=1, scenarios=16, updates=60, epoch=60, learning_rate=3e-3, clip_norm=10.0)
@@ -147,6 +198,17 @@ def test_divergence_is_told_and_changes_no_weights() -> None:
         ({"entropy": float("nan")}, "entropy is nan; expected a number >= 0"),
         ({"learning_rate": float("inf")}, "learning_rate is inf; expected a number > 0"),
         ({"baseline": "rollout", "scenarios": 1, "samples": 1}, "scenarios x samples is 1, expected >= 2"),
+        ({"tasks": ()}, r"tasks is \(\); expected one or more whole numbers >= 1"),
+        ({"tasks": (10, 0)}, r"tasks is \(10, 0\); expected one or more whole numbers >= 1"),
+        ({"task_weights": (1.0, 2.0)}, r"task_weights is \(1.0, 2.0\); expected 1 numbers > 0, one for each of tasks"),
+        ({"task_weights": (0.0,)}, r"task_weights is \(0.0,\); expected 1 numbers > 0"),
+        ({"reference_tasks": 0}, "reference_tasks is 0; expected a whole number >= 1"),
+        ({"imitation_updates": -1}, "imitation_updates is -1; expected a whole number >= 0"),
+        (
+            {"imitation_updates": 1, "imitation_plans": 63},
+            "imitation_plans is 63; expected at least imitation_batch, 64",
+        ),
+        ({"precision": "float16"}, "precision is 'float16'; expected one of float32, bfloat16"),
         ({"device": "tpu9"}, "device is 'tpu9'; expected cpu, cuda or auto"),
     ],
 )
