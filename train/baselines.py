@@ -75,8 +75,8 @@ class SamplesBaseline(Memoryless):
 class ExponentialBaseline:
     """A moving average of the losses, the same for all scenarios (the simplest one in Kool et al. 2019).
 
-    Its weights fall off exponentially: after each batch it is decay · average + (1 − decay) · mean of the batch, and the
-    first batch's mean to begin with.
+    The first batch's mean to begin with; then, with each batch, decay · average + (1 − decay) · mean of the batch, with
+    which that batch is compared.
 
     Args:
         decay: in 0..1; 0 compares with the batch's own mean.

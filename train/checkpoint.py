@@ -79,8 +79,8 @@ def resume(folder: Path) -> tuple[Reinforce, float]:
     state = read_json(at / "state.json", RunState)
     load_state(run.network, read_tensors(at / "network.safetensors"), at / "network.safetensors")
     _load_optimizer(run, at / "optimizer.safetensors")
-    # Before the first update a baseline may have nothing to remember yet.
-    if run.baseline.state() or (at / "baseline.safetensors").exists():
+    # Before its first update of REINFORCE a baseline may have nothing to remember yet.
+    if config.baseline != "samples" and (run.baseline.state() or state.update > config.imitation_updates):
         run.baseline.restore(read_tensors(at / "baseline.safetensors"), at / "baseline.safetensors")
     if state.update != numbers[-1] or state.update > config.updates:
         raise ConfigError(f"{at / 'state.json'}: update is {state.update}; expected {numbers[-1]}, as the folder says")

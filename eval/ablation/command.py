@@ -29,6 +29,8 @@ from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import Case
 from mrta_zoo.io.records import write_records
 
+USUAL = Budget()
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ablate:
@@ -48,15 +50,15 @@ class Ablate:
     """What to ask."""
     seeds: int = 2
     """Runs of each variant, with seeds 0, 1, …; with one there are no intervals."""
-    updates: int = Budget.updates
+    updates: int = USUAL.updates
     """Gradient steps of each run with the candidate decoder."""
-    paper_updates: int = Budget.paper_updates
+    paper_updates: int = USUAL.paper_updates
     """Gradient steps of each run with the paper's decoder, which takes about a fifth of the time a step."""
-    scenarios: int = Budget.scenarios
+    scenarios: int = USUAL.scenarios
     """Scenarios an update."""
-    samples: int = Budget.samples
+    samples: int = USUAL.samples
     """Missions sampled of each scenario."""
-    tasks: int = Budget.tasks
+    tasks: int = USUAL.tasks
     """Tasks of a scenario, which 1 to 4 robots share."""
     held_out: int = 64
     """Scenarios to compare on, for each distribution and number of robots (1, 2, 4)."""

@@ -8,11 +8,13 @@ A difference is that of means over runs and scenarios. Its variance is estimated
 - the variance, over scenarios, of the difference (runs averaged), divided by their number, within each number of
   robots, which is part of the design. It is what pairing by scenario gains.
 
-The interval is Student's with Satterthwaite's degrees of freedom, in practice those of the runs: with 2 seeds and 3
-variants t is about 3.2 instead of 1.96. Not a bootstrap: two seeds, resampled, give a quarter of the pairs twice the same
-run on either side, and a variance half of what it should be, so that the interval would pretend to know what it does
-not. Pooling assumes that runs of one variant scatter about as much as those of another. The scatter of runs that is due
-to the finite number of scenarios is counted in both terms, which makes intervals a little too wide, not too narrow.
+The interval is Student's with Satterthwaite's degrees of freedom: where the runs' scatter dominates, 3 for 2 seeds of 3
+variants, so that t is 3.2 instead of 1.96. It is not a hierarchical bootstrap because that resamples seeds, too: of two
+runs it sees half of their variance, and its interval would pretend to know what it does not. An interval from the two
+variants' own runs alone would have 2 degrees of freedom or fewer and say next to nothing. Pooling buys more at the
+price of an assumption: that runs of one variant scatter about as much as those of another. That runs of equal seeds
+draw equal training scenarios is not used. The scatter of runs that is due to the number of scenarios being finite is
+counted in both terms, which makes intervals a little too wide, not too narrow.
 """
 
 from __future__ import annotations

@@ -79,7 +79,11 @@ def _prepare(told: Any, stop: Any) -> None:
     global _told, _stop
     _told, _stop = told, stop
     torch.set_num_threads(1)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all; the parent decides
+    # Ctrl-C is for the parent alone; and Linux, which shares cores out by session, gives each run its own share.
+    if hasattr(os, "setsid"):
+        os.setsid()
+    else:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

@@ -33,7 +33,7 @@ def weights(run: Reinforce) -> dict[str, torch.Tensor]:
     return dict(run.network.state_dict())
 
 
-@pytest.mark.parametrize("baseline", ["samples", "rollout"])
+@pytest.mark.parametrize("baseline", ["samples", "rollout", "exponential"])
 @pytest.mark.parametrize("sharing", ["shared", "independent"])
 def test_resumed_run_ends_in_the_same_bits(tmp_path: Path, baseline: str, sharing: str) -> None:
     config = replace(TINY, baseline=baseline, sharing=sharing, significance=0.9)
@@ -57,6 +57,22 @@ def test_resumed_run_ends_in_the_same_bits(tmp_path: Path, baseline: str, sharin
         assert torch.equal(value, weights(resumed)[name])
     names = sorted(each.name for each in (tmp_path / "run" / "checkpoints").iterdir())
     assert names == ["00000002", "00000004", "00000006"]
+
+
+def test_the_moving_average_is_in_the_checkpoint(tmp_path: Path) -> None:
+    run = checkpoint.start(tmp_path, replace(TINY, baseline="exponential"))
+    run.validate()
+    checkpoint.save(tmp_path, run, 0.0)
+    assert checkpoint.resume(tmp_path)[0].baseline.state() == {}
+    run.step(), run.step()
+    run.validate()
+    checkpoint.save(tmp_path, run, 0.0)
+    (average,) = run.baseline.state().values()
+    assert checkpoint.resume(tmp_path)[0].baseline.state() == {"average": average}
+    assert 0 < float(average) < 1
+    (tmp_path / "checkpoints" / "00000002" / "baseline.safetensors").unlink()
+    with pytest.raises(ConfigError, match=r"baseline\.safetensors: no such file"):
+        checkpoint.resume(tmp_path)
 
 
 def test_killed_run_resumes_to_the_same_bits(tmp_path: Path) -> None:
