@@ -14,7 +14,9 @@ from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.rollout import roll_out
 from mrta_zoo.policies.sharing import build_network
+from mrta_zoo.train import checkpoint
 from mrta_zoo.train.baselines import ExponentialBaseline, RolloutBaseline, SamplesBaseline
+from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.objective import missed_share
 
 
@@ -90,3 +92,23 @@ def test_exponential_baseline_is_a_moving_average() -> None:
 def test_a_damaged_exponential_baseline_is_refused(state: dict[str, torch.Tensor]) -> None:
     with pytest.raises(ConfigError, match=r"there\.safetensors: expected one finite number"):
         ExponentialBaseline(0.8).restore(state, Path("there.safetensors"))
+
+
+def test_the_moving_average_is_in_the_checkpoint(tmp_path: Path) -> None:
+    config = TrainConfig(
+        network=NetworkConfig(embedding=32, heads=4), tasks=(10,), min_robots=1, max_robots=3, scenarios=4, samples=4,
+        updates=6, epoch=2, validation_scenarios=8, baseline="exponential",
+    )  # fmt: skip
+    run = checkpoint.start(tmp_path, config)
+    run.validate()
+    checkpoint.save(tmp_path, run, 0.0)
+    assert checkpoint.resume(tmp_path)[0].baseline.state() == {}
+    run.step(), run.step()
+    run.validate()
+    checkpoint.save(tmp_path, run, 0.0)
+    (average,) = run.baseline.state().values()
+    assert 0 < float(average) < 1
+    assert checkpoint.resume(tmp_path)[0].baseline.state() == {"average": average}
+    (tmp_path / "checkpoints" / "00000002" / "baseline.safetensors").unlink()
+    with pytest.raises(ConfigError, match=r"baseline\.safetensors: no such file"):
+        checkpoint.resume(tmp_path)

@@ -59,22 +59,6 @@ def test_resumed_run_ends_in_the_same_bits(tmp_path: Path, baseline: str, sharin
     assert names == ["00000002", "00000004", "00000006"]
 
 
-def test_the_moving_average_is_in_the_checkpoint(tmp_path: Path) -> None:
-    run = checkpoint.start(tmp_path, replace(TINY, baseline="exponential"))
-    run.validate()
-    checkpoint.save(tmp_path, run, 0.0)
-    assert checkpoint.resume(tmp_path)[0].baseline.state() == {}
-    run.step(), run.step()
-    run.validate()
-    checkpoint.save(tmp_path, run, 0.0)
-    (average,) = run.baseline.state().values()
-    assert checkpoint.resume(tmp_path)[0].baseline.state() == {"average": average}
-    assert 0 < float(average) < 1
-    (tmp_path / "checkpoints" / "00000002" / "baseline.safetensors").unlink()
-    with pytest.raises(ConfigError, match=r"baseline\.safetensors: no such file"):
-        checkpoint.resume(tmp_path)
-
-
 def test_killed_run_resumes_to_the_same_bits(tmp_path: Path) -> None:
     arguments = shlex.split(
         "--preset smoke --tasks 10 --updates 12 --epoch 1 --scenarios 4 --validation-scenarios 8 "
