@@ -113,7 +113,7 @@ def gap_by_robots(study: Study) -> list[tuple[int, Effect]]:
 
 
 def _effect(study: Study, question: Question, coefficients: dict[str, float], weights: dict[int, float]) -> Effect:
-    return effect_of(study.runs(question, EVALUATED_ON), coefficients, weights)
+    return effect_of(study.runs(question, EVALUATED_ON), coefficients, weights, study.decoders)
 
 
 def _equals(p: str) -> str:

@@ -87,7 +87,7 @@ def ablate_command(argv: Sequence[str]) -> None:
     )
     held_out = HeldOut(command.tasks, command.held_out)
     evaluated = needed(questions)
-    variants = {name: variant for name, variant in all_variants(budget).items() if name in evaluated}
+    every = all_variants(budget)
     jobs = [
         Job(
             variant=variant.name,
@@ -96,7 +96,8 @@ def ablate_command(argv: Sequence[str]) -> None:
             held_out=held_out,
             distributions=evaluated[variant.name],
         )
-        for variant in variants.values()
+        for variant in every.values()
+        if variant.name in evaluated
         for seed in range(command.seeds)
     ]
     settings = {"only": [question.name for question in questions], "seeds": command.seeds, **asdict(budget),
@@ -120,7 +121,7 @@ def ablate_command(argv: Sequence[str]) -> None:
     write_records(rows, command.out / "rows.csv")
     study = Study(
         questions=questions,
-        variants=variants,
+        variants={name: every[name] for name in evaluated},
         budget=budget,
         seeds=command.seeds,
         rows=rows,

@@ -3,8 +3,8 @@
 A difference is that of means over runs and scenarios. Its variance is estimated as the sum of
 
 - s² · Σ c²/n, where c is +1 or −1 for the two variants, n their numbers of runs, and s² the variance between runs of
-  the same variant, pooled over the variants of a question as in a one-way analysis of variance: it has one degree of
-  freedom a variant with two seeds, so that a question about four variants has 4, not 1;
+  the same variant, pooled as in a one-way analysis of variance over those variants of a question that scatter alike,
+  which are taken to be those with the same decoder: 4 such variants with two seeds have 4 degrees of freedom, not 1;
 - the variance, over scenarios, of the difference (runs averaged), divided by their number, within each number of
   robots, which is part of the design. It is what pairing by scenario gains.
 
@@ -12,9 +12,9 @@ The interval is Student's with Satterthwaite's degrees of freedom: where the run
 variants, so that t is 3.2 instead of 1.96. It is not a hierarchical bootstrap because that resamples seeds, too: of two
 runs it sees half of their variance, and its interval would pretend to know what it does not. An interval from the two
 variants' own runs alone would have 2 degrees of freedom or fewer and say next to nothing. Pooling buys more at the
-price of an assumption: that runs of one variant scatter about as much as those of another. That runs of equal seeds
-draw equal training scenarios is not used. The scatter of runs that is due to the number of scenarios being finite is
-counted in both terms, which makes intervals a little too wide, not too narrow.
+price of that assumption. That runs of equal seeds draw equal training scenarios is not used. The scatter of runs that
+is due to the number of scenarios being finite is counted in both terms, which makes intervals a little too wide, not too
+narrow.
 """
 
 from __future__ import annotations
@@ -80,22 +80,27 @@ def run_values(runs: Runs, weights: Mapping[int, float]) -> list[float]:
     ]
 
 
-def effect_of(pool: Mapping[str, Runs], coefficients: Mapping[str, float], weights: Mapping[int, float]) -> Effect:
+def effect_of(
+    pool: Mapping[str, Runs],
+    coefficients: Mapping[str, float],
+    weights: Mapping[int, float],
+    alike: Mapping[str, str] | None = None,
+) -> Effect:
     """A weighted sum of variants, such as one minus another.
 
     Args:
         pool: the variants whose runs say how much runs scatter, all those of `coefficients` among them.
         coefficients: of the variants.
         weights: of the numbers of robots.
+        alike: a name for each variant of the pool, the same for those that scatter alike; by default all do.
     """
     values = {name: run_values(runs, weights) for name, runs in pool.items()}
     mean = sum(c * float(np.mean(values[name])) for name, c in coefficients.items())
     count = sum(len(values[name]) for name in coefficients)
-    freedom = sum(len(each) - 1 for each in values.values())
-    if freedom < 1:
+    terms = _terms_of_runs(values, coefficients, alike or dict.fromkeys(pool, ""))
+    if terms is None:
         return Effect(difference=Estimate(mean, None, None, count, TOO_FEW))
-    scatter = sum(float(np.sum((np.array(each) - np.mean(each)) ** 2)) for each in values.values()) / freedom
-    terms = [(scatter * sum(c**2 / len(values[name]) for name, c in coefficients.items()), freedom)]
+    of_runs = sum(term for term, _ in terms)
     for robots, weight in weights.items():
         differences = sum(
             c * np.mean([run[robots] for run in pool[name].values()], axis=0) for name, c in coefficients.items()
@@ -111,7 +116,26 @@ def effect_of(pool: Mapping[str, Runs], coefficients: Mapping[str, float], weigh
     return Effect(
         difference=Estimate(mean, mean - half, mean + half, count),
         p=float(2 * stats.t.sf(abs(mean) / error, satterthwaite)),
-        runs_error=float(np.sqrt(terms[0][0])),
-        scenarios_error=float(np.sqrt(variance - terms[0][0])),
+        runs_error=float(np.sqrt(of_runs)),
+        scenarios_error=float(np.sqrt(variance - of_runs)),
         freedom=float(satterthwaite),
     )
+
+
+def _terms_of_runs(
+    values: Mapping[str, list[float]], coefficients: Mapping[str, float], alike: Mapping[str, str]
+) -> list[tuple[float, int]] | None:
+    """What the scatter of runs adds to the variance, with its degrees of freedom, for each kind of variants.
+
+    None if some kind has one run of each variant, so that nobody knows.
+    """
+    terms = []
+    for kind in dict.fromkeys(alike[name] for name in coefficients):
+        members = [each for name, each in values.items() if alike[name] == kind]
+        freedom = sum(len(each) - 1 for each in members)
+        if freedom < 1:
+            return None
+        scatter = sum(float(np.sum((np.array(each) - np.mean(each)) ** 2)) for each in members) / freedom
+        share = sum(c**2 / len(values[name]) for name, c in coefficients.items() if alike[name] == kind)
+        terms.append((scatter * share, freedom))
+    return terms

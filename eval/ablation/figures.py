@@ -43,7 +43,7 @@ def draw_forest(study: Study, comparisons: list[Comparison]) -> Figure:
     """Differences from the reference with their intervals, question by question, blue where they are sure."""
     lines: list[Comparison | str] = []
     for question in study.questions:
-        lines.append(f"{question.title} (against: {study.variants[question.reference].title})")
+        lines.append(f"{question.title} (against {question.reference})")
         lines += [each for each in comparisons if each.question is question]
     figure = new_figure(9.6, 0.8 + 0.29 * len(lines))
     axes = figure.subplots()
@@ -60,10 +60,10 @@ def draw_forest(study: Study, comparisons: list[Comparison]) -> Figure:
     axes.set_yticks(range(len(lines)), [_label(study, line) for line in lines])
     for label, line in zip(axes.get_yticklabels(), lines, strict=True):
         label.set_color(INK)
-        label.set_weight("bold" if isinstance(line, str) else "normal")
+        label.set_fontweight("bold" if isinstance(line, str) else "normal")
     axes.set_ylim(len(lines) - 0.5, -0.7)
     axes.set_xlabel(
-        f"difference from the reference, percentage points of tasks completed, {100 * LEVEL:.0f} % interval; "
+        f"difference in tasks completed, percentage points, with its {100 * LEVEL:.0f} % interval\n"
         "filled: sure after adjustment",
         fontsize=9, color=FAINT,
     )  # fmt: skip

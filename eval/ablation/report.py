@@ -22,8 +22,8 @@ from mrta_zoo.eval.statistics import LEVEL
 
 INTERVALS = (
     f"{100 * LEVEL:.0f} % intervals are Student’s, from the scatter of training runs (pooled over the variants of a "
-    "question, as in a one-way analysis of variance) and of scenarios (paired), with Satterthwaite’s degrees of "
-    "freedom."
+    "question with the same decoder, as in a one-way analysis of variance) and of scenarios (paired), with "
+    "Satterthwaite’s degrees of freedom."
 )
 
 
@@ -172,7 +172,8 @@ def _differences(study: Study, comparisons: list[Comparison]) -> Section:
 def _means(study: Study) -> Section:
     found = arrange(study.rows)
     shown, data = [], []
-    for (name, distribution), runs in found.items():
+    for name, distribution in sorted(found, key=lambda key: list(study.variants).index(key[0])):
+        runs = found[name, distribution]
         overall = run_values(runs, equal_weights(ROBOTS))
         of_runs = {robots: run_values(runs, {robots: 1.0}) for robots in ROBOTS}
         by_robots = {wording.counted(robots, "robot"): f"{np.mean(of_runs[robots]):.1f}" for robots in ROBOTS}

@@ -59,6 +59,11 @@ class Study:
     rows: Sequence[AblationRow]
     curves: Mapping[tuple[str, int], LearningCurve]
 
+    @property
+    def decoders(self) -> dict[str, str]:
+        """Of each variant: runs with the same one are taken to scatter alike."""
+        return {name: variant.config.network.decoder for name, variant in self.variants.items()}
+
     def runs(self, question: Question, distribution: str) -> dict[str, Runs]:
         """The runs of a question's variants."""
         found = arrange(row for row in self.rows if row.distribution == distribution)
@@ -73,7 +78,8 @@ class Study:
         for distribution in question.distributions:
             pool = self.runs(question, distribution)
             for variant in question.others:
-                effect = effect_of(pool, {variant: 1.0, question.reference: -1.0}, equal_weights(ROBOTS))
+                coefficients = {variant: 1.0, question.reference: -1.0}
+                effect = effect_of(pool, coefficients, equal_weights(ROBOTS), self.decoders)
                 found.append((distribution, variant, effect))
         adjusted = holm([effect.p for _, _, effect in found])
         return [

@@ -178,14 +178,15 @@ def test_what_cannot_be_done_is_said(
 
 def test_a_failure_in_a_process_is_said_in_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
-    (out / "runs").parent.mkdir()
     arguments = ["--out", str(out), *TINY, "--only", "moments", "--seeds", "1", "--workers", "2"]
-    assert main(["ablate", *arguments]) == 0
+    assert main(["ablate", *arguments[:-1], "1"]) == 0
     damaged = out / "runs" / "capam-seed0"
     (damaged / "rows.csv").unlink()
     (damaged / "checkpoints" / "00000004" / "network.safetensors").write_bytes(b"garbage")
     assert "network.safetensors: not a readable safetensors file" in fails(capsys, *arguments)
-    rows = out / "runs" / "capam-p1-seed0" / "rows.csv"
-    rows.write_text("".join(rows.read_text().splitlines(keepends=True)[:-1]))
     (damaged / "rows.csv").write_text("variant\n")
     assert "line 1: the columns are ['variant']" in fails(capsys, *arguments)
+    whole = (out / "runs" / "capam-p1-seed0" / "rows.csv").read_text().splitlines(keepends=True)
+    (damaged / "rows.csv").write_text("".join(whole).replace("capam-p1", "capam"))
+    (out / "runs" / "capam-p1-seed0" / "rows.csv").write_text("".join(whole[:-1]))
+    assert "capam-p1-seed0/rows.csv holds other rows than its run has" in fails(capsys, *arguments)

@@ -81,6 +81,21 @@ def test_more_variants_say_more_about_how_runs_scatter() -> None:
     assert alone.freedom == pytest.approx(62.5**2 / (2500 / 2 + 2 * 6.25**2))
 
 
+def test_variants_that_scatter_otherwise_are_not_pooled() -> None:
+    kinds = {"a": "x", "b": "x", "c": "y"}
+    # a and b: s² = (50 + 50) / 2 = 50 with 2 degrees of freedom; c: s² = 200 with 1. 50/2 + 200/2 = 125 for c − a.
+    # Scenarios, runs averaged, c − a: one robot 20, 0, variance 200; two robots 10, −10, variance 200; each 0.25 · 100.
+    effect = effect_of(RUNS, {"c": 1.0, "a": -1.0}, EQUAL, kinds)
+    assert effect.runs_error == pytest.approx(125**0.5)
+    assert effect.freedom == pytest.approx(175**2 / (25**2 / 2 + 100**2 / 1 + 25**2 + 25**2))
+    # Where c has no part, its scatter counts for nothing.
+    alone = effect_of({name: RUNS[name] for name in "ab"}, {"a": 1.0, "b": -1.0}, EQUAL)
+    assert effect_of(RUNS, {"a": 1.0, "b": -1.0}, EQUAL, kinds) == alone
+    # One run of c: nobody knows how much runs like it scatter.
+    few = {**RUNS, "c": {0: RUNS["c"][0]}}
+    assert effect_of(few, {"c": 1.0, "a": -1.0}, EQUAL, kinds).difference.note == TOO_FEW
+
+
 def test_one_run_has_no_interval_and_equal_runs_no_width() -> None:
     single = {name: {0: runs[0]} for name, runs in RUNS.items()}
     effect = effect_of(single, {"a": 1.0, "b": -1.0}, EQUAL)
