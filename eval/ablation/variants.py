@@ -32,8 +32,8 @@ class Budget:
         validation_scenarios: on how many scenarios.
     """
 
-    updates: int = 200
-    paper_updates: int = 1000
+    updates: int = 120
+    paper_updates: int = 600
     scenarios: int = 8
     samples: int = 8
     tasks: int = 50

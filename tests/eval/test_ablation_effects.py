@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from scipy import stats
 
@@ -94,6 +95,25 @@ def test_variants_that_scatter_otherwise_are_not_pooled() -> None:
     # One run of c: nobody knows how much runs like it scatter.
     few = {**RUNS, "c": {0: RUNS["c"][0]}}
     assert effect_of(few, {"c": 1.0, "a": -1.0}, EQUAL, kinds).difference.note == TOO_FEW
+
+
+def test_intervals_from_two_seeds_hold_the_true_difference_as_often_as_they_say() -> None:
+    rng, held = np.random.default_rng(0), 0
+    for _ in range(300):
+        # No difference but by chance: of scenarios for each variant (4 points), of runs (1), and of both (4).
+        pool = {}
+        for name in "abc":
+            of_scenarios = rng.normal(0, 4, (2, 16))
+            pool[name] = {
+                seed: dict(zip((1, 2), of_scenarios + rng.normal(0, 1) + rng.normal(0, 4, (2, 16)), strict=True))
+                for seed in (0, 1)
+            }
+        difference = effect_of(pool, {"a": 1.0, "b": -1.0}, EQUAL).difference
+        assert difference.low is not None
+        assert difference.high is not None
+        held += difference.low <= 0 <= difference.high
+    # 95 % of 300 is 285; the standard deviation is 3.8.
+    assert 274 <= held <= 298
 
 
 def test_one_run_has_no_interval_and_equal_runs_no_width() -> None:
