@@ -59,6 +59,14 @@ def _converge(argv: list[str]) -> None:
     converge_command(argv)
 
 
+def _ablate(argv: list[str]) -> None:
+    require("torch", "training")
+    require("report", "the report")
+    from mrta_zoo.eval.ablation.command import ablate_command
+
+    ablate_command(argv)
+
+
 def _demo(argv: list[str]) -> None:
     from mrta_zoo.eval.commands import demo_command
 
@@ -72,6 +80,7 @@ COMMANDS: dict[str, tuple[str, Command]] = {
     "train": ("train a policy by REINFORCE", _train),
     "reproduce": ("run the experiments of the CapAM paper and write a report", _reproduce),
     "converge": ("measure plan quality against planning time, and draw it", _converge),
+    "ablate": ("train variants that differ in one thing each, and compare them", _ablate),
     "demo": ("see it all at work, in a few minutes", _demo),
 }
 """Each command with what `mrta-zoo --help` says of it. To add one, give it an entry."""

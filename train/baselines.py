@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import copy
+from pathlib import Path
 from typing import Protocol
 
+import torch
 from torch import Tensor
 
 from mrta_zoo.batch import ScenarioBatch
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.rollout import roll_out
 from mrta_zoo.policies.sharing import Network
+from mrta_zoo.policies.weights import load_state
 from mrta_zoo.rules import MaskRule
+from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.objective import Objective
 
 
@@ -33,8 +38,30 @@ class Baseline(Protocol):
         """Take note of the network's greedy (V,) loss on the validation scenarios; whether the baseline changed."""
         ...
 
+    def state(self) -> dict[str, Tensor]:
+        """What a checkpoint must hold for it; empty if it remembers nothing."""
+        ...
 
-class SamplesBaseline:
+    def restore(self, state: dict[str, Tensor], path: Path) -> None:
+        """Put back what `state` gave.
+
+        Raises:
+            ConfigError: if it does not fit; the message names the file, `path`.
+        """
+        ...
+
+
+class Memoryless:
+    """What baselines without a memory have in common."""
+
+    def state(self) -> dict[str, Tensor]:
+        return {}
+
+    def restore(self, state: dict[str, Tensor], path: Path) -> None:
+        pass
+
+
+class SamplesBaseline(Memoryless):
     """The mean of the *other* samples of the same scenario (leave-one-out; Kool et al. 2019b)."""
 
     def advantage(self, scenarios: ScenarioBatch, loss: Tensor) -> Tensor:
@@ -43,6 +70,38 @@ class SamplesBaseline:
 
     def end_epoch(self, network: Network, validation: ScenarioBatch, loss: Tensor) -> bool:
         return False
+
+
+class ExponentialBaseline:
+    """A moving average of the losses, the same for all scenarios (the simplest one in Kool et al. 2019).
+
+    The first batch's mean to begin with; then, with each batch, decay · average + (1 − decay) · mean of the batch, with
+    which that batch is compared.
+
+    Args:
+        decay: in 0..1; 0 compares with the batch's own mean.
+    """
+
+    def __init__(self, decay: float) -> None:
+        self.decay = decay
+        self.average: float | None = None
+
+    def advantage(self, scenarios: ScenarioBatch, loss: Tensor) -> Tensor:
+        mean = float(loss.mean())
+        self.average = mean if self.average is None else self.decay * self.average + (1 - self.decay) * mean
+        return loss - self.average
+
+    def end_epoch(self, network: Network, validation: ScenarioBatch, loss: Tensor) -> bool:
+        return False
+
+    def state(self) -> dict[str, Tensor]:
+        return {} if self.average is None else {"average": torch.tensor(self.average, dtype=torch.float64)}
+
+    def restore(self, state: dict[str, Tensor], path: Path) -> None:
+        average = state.get("average")
+        if set(state) != {"average"} or average is None or average.numel() != 1 or not torch.isfinite(average).all():
+            raise ConfigError(f"{path}: expected one finite number, the moving average of an exponential baseline")
+        self.average = float(average)
 
 
 class RolloutBaseline:
@@ -77,5 +136,20 @@ class RolloutBaseline:
         self.network.load_state_dict(network.state_dict())
         return True
 
+    def state(self) -> dict[str, Tensor]:
+        return dict(self.network.state_dict())
+
+    def restore(self, state: dict[str, Tensor], path: Path) -> None:
+        load_state(self.network, state, path)
+
     def _greedy(self, scenarios: ScenarioBatch) -> Tensor:
         return self.objective(roll_out(self.network, scenarios, mask_rule=self.mask_rule), scenarios)
+
+
+def build_baseline(config: TrainConfig, network: Network, objective: Objective) -> Baseline:
+    """The baseline that a configuration names, at the start of its run."""
+    if config.baseline == "rollout":
+        return RolloutBaseline(network, objective, config.mask_rule, config.significance)
+    if config.baseline == "exponential":
+        return ExponentialBaseline(config.baseline_decay)
+    return SamplesBaseline()

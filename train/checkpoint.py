@@ -6,7 +6,7 @@ A run's folder holds::
     checkpoints/00000050/              one folder a checkpoint, named after the update; it appears all at once
         network.safetensors            the weights
         optimizer.safetensors          Adam's moments
-        baseline.safetensors           the rollout baseline's weights, if there is one
+        baseline.safetensors           what the baseline remembers: weights (rollout), the average (exponential)
         state.json                     update, time spent, validation history
     plans/*.npz                        the plans to imitate, if any
     policy.safetensors, policy.json    the policy with the best validation so far
@@ -33,7 +33,6 @@ from mrta_zoo.policies.weights import (
     write_json,
     write_tensors,
 )
-from mrta_zoo.train.baselines import RolloutBaseline
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import most_robots
 from mrta_zoo.train.reinforce import Reinforce, RunOptions, Validation
@@ -84,9 +83,9 @@ def resume(folder: Path, options: RunOptions | None = None) -> tuple[Reinforce, 
     state = read_json(at / "state.json", RunState)
     load_state(run.network, read_tensors(at / "network.safetensors"), at / "network.safetensors")
     _load_optimizer(run, at / "optimizer.safetensors")
-    if isinstance(run.baseline, RolloutBaseline):
-        path = at / "baseline.safetensors"
-        load_state(run.baseline.network, read_tensors(path), path)
+    # Before its first update of REINFORCE a baseline may have nothing to remember yet.
+    if config.baseline != "samples" and (run.baseline.state() or state.update > config.imitation_updates):
+        run.baseline.restore(read_tensors(at / "baseline.safetensors"), at / "baseline.safetensors")
     if state.update != numbers[-1] or state.update > config.total_updates:
         raise ConfigError(f"{at / 'state.json'}: update is {state.update}; expected {numbers[-1]}, as the folder says")
     run.update = state.update
@@ -113,8 +112,8 @@ def save(folder: Path, run: Reinforce, seconds: float) -> None:
     partial.mkdir(parents=True)
     write_tensors(partial / "network.safetensors", dict(run.network.state_dict()))
     write_tensors(partial / "optimizer.safetensors", _optimizer_tensors(run))
-    if isinstance(run.baseline, RolloutBaseline):
-        write_tensors(partial / "baseline.safetensors", dict(run.baseline.network.state_dict()))
+    if baseline := run.baseline.state():
+        write_tensors(partial / "baseline.safetensors", baseline)
     write_json(partial / "state.json", RunState(run.update, round(seconds, 1), run.history))
     # Before the checkpoint counts: a run killed in between validates again and writes the same policy.
     if run.history[-1] is run.best:

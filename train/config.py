@@ -13,7 +13,7 @@ from mrta_zoo.policies.sharing import Sharing
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.train.precision import Precision
 
-BaselineName = Literal["samples", "rollout"]
+BaselineName = Literal["samples", "rollout", "exponential"]
 ObjectiveName = Literal["cost", "completion"]
 GeneratorName = Literal["taptc", "uniform", "mixture"]
 
@@ -42,8 +42,9 @@ class TrainConfig:
         objective: what to minimise: "cost" (Eq. 1 of the paper, divided by the number of tasks), or one minus the
             completion rate ("completion").
         baseline: what a mission's outcome is compared with: the mean of the other samples of its scenario
-            ("samples"), or the greedy rollout of the best policy so far, replaced when a paired t-test says that
-            the present one is better ("rollout", the paper's).
+            ("samples"), the greedy rollout of the best policy so far, replaced when a paired t-test says that
+            the present one is better ("rollout", the paper's), or a moving average over updates ("exponential").
+        baseline_decay: how much of the "exponential" baseline an update leaves as it was.
         scenarios: scenarios per update.
         samples: missions sampled of each scenario; at least 2 for the "samples" baseline.
         updates: number of gradient steps of REINFORCE.
@@ -78,6 +79,7 @@ class TrainConfig:
     imitation_learning_rate: float = 1e-3
     objective: ObjectiveName = "completion"
     baseline: BaselineName = "samples"
+    baseline_decay: float = 0.8
     scenarios: int = 16
     samples: int = 8
     updates: int = 1000
@@ -137,6 +139,8 @@ class TrainConfig:
             raise ConfigError(f"validation_scenarios is {self.validation_scenarios}; expected at least 2")
         if not 0 < self.significance < 1:
             raise ConfigError(f"significance is {self.significance}; expected a number between 0 and 1")
+        if not 0 <= self.baseline_decay < 1:
+            raise ConfigError(f"baseline_decay is {self.baseline_decay}; expected a number >= 0 and < 1")
         if not 0 <= self.entropy < math.inf:
             raise ConfigError(f"entropy is {self.entropy}; expected a number >= 0")
         check_seed(self.seed)

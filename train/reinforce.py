@@ -26,7 +26,7 @@ from mrta_zoo.policies.capam.inputs import Tasks
 from mrta_zoo.policies.rollout import Segment, roll_out
 from mrta_zoo.policies.sharing import Network, build_network
 from mrta_zoo.scenario import Scenario
-from mrta_zoo.train.baselines import Baseline, RolloutBaseline, SamplesBaseline
+from mrta_zoo.train.baselines import Baseline, build_baseline
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, most_robots, training_generator
 from mrta_zoo.train.experts import ExpertPlan
@@ -115,11 +115,7 @@ class Reinforce:
                     for layer in module.layers:
                         layer.compile(dynamic=True)
         self.optimizer = torch.optim.Adam(self.network.parameters(), lr=config.learning_rate)
-        self.baseline: Baseline = (
-            RolloutBaseline(self.network, self.objective, config.mask_rule, config.significance)
-            if config.baseline == "rollout"
-            else SamplesBaseline()
-        )
+        self.baseline: Baseline = build_baseline(config, self.network, self.objective)
         self.update = 0
         self.history: list[Validation] = []
         self._validation: ScenarioBatch | None = None

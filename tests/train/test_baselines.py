@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 import torch
 
 from mrta_zoo.batch import ScenarioBatch
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.rollout import roll_out
 from mrta_zoo.policies.sharing import build_network
-from mrta_zoo.train.baselines import RolloutBaseline, SamplesBaseline
+from mrta_zoo.train import checkpoint
+from mrta_zoo.train.baselines import ExponentialBaseline, RolloutBaseline, SamplesBaseline
+from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.objective import missed_share
 
 
@@ -62,3 +67,48 @@ def test_rollout_baseline_is_not_replaced_by_luck() -> None:
     loss = missed_share(roll_out(network, batch), batch) + 0.001
     loss[0] -= 0.5
     assert not RolloutBaseline(network, missed_share, "feasible", 0.05).end_epoch(network, batch, loss)
+
+
+def test_exponential_baseline_is_a_moving_average() -> None:
+    baseline, batch = ExponentialBaseline(0.75), scenarios(2)
+    assert baseline.state() == {}
+    # The first batch's mean, (1 + 2 + 3 + 6) / 4 = 3, to begin with.
+    first = baseline.advantage(batch, torch.tensor([[1.0, 2.0], [3.0, 6.0]], dtype=torch.float64))
+    assert first.tolist() == [[-2, -1], [0, 3]]
+    # Then 0.75 · 3 + 0.25 · 7 = 4.
+    second = baseline.advantage(batch, torch.tensor([[7.0, 7.0], [6.0, 8.0]], dtype=torch.float64))
+    assert second.tolist() == [[3, 3], [2, 4]]
+    assert not baseline.end_epoch(build_network(NetworkConfig(embedding=32), "shared", 2, seed=0), batch, second[:, 0])
+    resumed = ExponentialBaseline(0.75)
+    resumed.restore(baseline.state(), Path("baseline.safetensors"))
+    # 0.75 · 4 + 0.25 · 0 = 3, in both.
+    zeros = torch.zeros(2, 2, dtype=torch.float64)
+    assert resumed.advantage(batch, zeros).tolist() == baseline.advantage(batch, zeros).tolist() == [[-3, -3], [-3, -3]]
+
+
+@pytest.mark.parametrize(
+    "state", [{}, {"average": torch.tensor(float("nan"))}, {"average": torch.zeros(2)}, {"mean": torch.zeros(())}]
+)
+def test_a_damaged_exponential_baseline_is_refused(state: dict[str, torch.Tensor]) -> None:
+    with pytest.raises(ConfigError, match=r"there\.safetensors: expected one finite number"):
+        ExponentialBaseline(0.8).restore(state, Path("there.safetensors"))
+
+
+def test_the_moving_average_is_in_the_checkpoint(tmp_path: Path) -> None:
+    config = TrainConfig(
+        network=NetworkConfig(embedding=32, heads=4), tasks=(10,), min_robots=1, max_robots=3, scenarios=4, samples=4,
+        updates=6, epoch=2, validation_scenarios=8, baseline="exponential",
+    )  # fmt: skip
+    run = checkpoint.start(tmp_path, config)
+    run.validate()
+    checkpoint.save(tmp_path, run, 0.0)
+    assert checkpoint.resume(tmp_path)[0].baseline.state() == {}
+    run.step(), run.step()
+    run.validate()
+    checkpoint.save(tmp_path, run, 0.0)
+    (average,) = run.baseline.state().values()
+    assert 0 < float(average) < 1
+    assert checkpoint.resume(tmp_path)[0].baseline.state() == {"average": average}
+    (tmp_path / "checkpoints" / "00000002" / "baseline.safetensors").unlink()
+    with pytest.raises(ConfigError, match=r"baseline\.safetensors: no such file"):
+        checkpoint.resume(tmp_path)

@@ -1,0 +1,103 @@
+"""Runs in processes of their own, one torch thread each."""
+
+from __future__ import annotations
+
+import multiprocessing
+import multiprocessing.connection
+import os
+import queue
+import signal
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from typing import Any
+
+import torch
+
+from mrta_zoo.eval.ablation.training import Job, perform
+
+Report = Callable[[Job, float], None]
+"""Is told which share of a job is done; 1 only once its rows are there."""
+
+POLL = 0.2
+"""Seconds between two looks at what the processes have to tell."""
+
+_told: Any = None
+_stop: Any = None
+
+
+class _StoppedError(Exception):
+    """The study ends early: another run failed, or the user interrupted it."""
+
+
+def perform_all(jobs: Sequence[Job], workers: int, report: Report) -> None:
+    """Do all jobs, at most `workers` at a time; with one, in this process.
+
+    Results are the same for any number of workers. Where this process is interrupted, or a job fails, the others stop
+    after their update; where it is killed, they end with it.
+
+    Raises:
+        MrtaError: if a job fails.
+    """
+    if workers == 1:
+        for job in jobs:
+            _alone(job, report)
+        return
+    context = multiprocessing.get_context("spawn")
+    told, stop = context.Queue(), context.Event()
+    with ProcessPoolExecutor(workers, context, initializer=_prepare, initargs=(told, stop)) as pool:
+        try:
+            _watch(jobs, {pool.submit(_perform, index, job): job for index, job in enumerate(jobs)}, told, report)
+        except BaseException:
+            stop.set()
+            pool.shutdown(wait=True, cancel_futures=True)
+            raise
+
+
+def _alone(job: Job, report: Report) -> None:
+    perform(job, lambda share: report(job, min(share, 0.999)))
+    report(job, 1.0)
+
+
+def _watch(jobs: Sequence[Job], running: dict[Future[None], Job], told: Any, report: Report) -> None:
+    while running:
+        finished, _ = wait(running, timeout=POLL, return_when=FIRST_COMPLETED)
+        while True:
+            try:
+                index, share = told.get_nowait()
+            except queue.Empty:
+                break
+            report(jobs[index], min(share, 0.999))
+        for future in finished:
+            job = running.pop(future)
+            future.result()
+            report(job, 1.0)
+
+
+def _prepare(told: Any, stop: Any) -> None:
+    """Make a process ready, before its first job."""
+    global _told, _stop
+    _told, _stop = told, stop
+    torch.set_num_threads(1)
+    # Ctrl-C is for the parent alone; and Linux, which shares cores out by session, gives each run its own share.
+    if hasattr(os, "setsid"):
+        os.setsid()
+    else:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    multiprocessing.connection.wait([parent.sentinel])
+    os._exit(1)
+
+
+def _perform(index: int, job: Job) -> None:
+    def tell(share: float) -> None:
+        if _stop.is_set():
+            raise _StoppedError
+        _told.put((index, share))
+
+    perform(job, tell)

@@ -1,0 +1,113 @@
+"""One run of the study: trained, or trained on from its last checkpoint, then evaluated."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.eval.ablation.held_out import ROBOTS, Distribution, HeldOut
+from mrta_zoo.eval.ablation.rows import AblationRow
+from mrta_zoo.eval.rows_file import RowsFile
+from mrta_zoo.io.records import write_records
+from mrta_zoo.policies.neural import load_policy
+from mrta_zoo.train import checkpoint
+from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.reinforce import Reinforce, Validation
+from mrta_zoo.verify import verify
+
+Tell = Callable[[float], None]
+"""Is told the share of the run that is done, 0 to 1, after each update; stops the run by raising."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Job:
+    """A variant with a seed.
+
+    Attributes:
+        variant: its name.
+        folder: of the run.
+        config: with the seed.
+        held_out: what it is evaluated on.
+        distributions: of those scenarios.
+    """
+
+    variant: str
+    folder: Path
+    config: TrainConfig
+    held_out: HeldOut
+    distributions: tuple[Distribution, ...]
+
+    @property
+    def seed(self) -> int:
+        """Of the run."""
+        return self.config.seed
+
+    @property
+    def rows_file(self) -> Path:
+        """There once the run is finished, and whole."""
+        return self.folder / "rows.csv"
+
+
+def perform(job: Job, tell: Tell) -> None:
+    """Do what there is to do of a run, which leaves its rows in its folder.
+
+    Raises:
+        ConfigError: if the folder's files are damaged or of another run, or training diverges.
+    """
+    if job.rows_file.exists():
+        return
+    run, seconds = _begin(job)
+    begun = time.perf_counter() - seconds
+    total = job.config.total_updates
+    tell(run.update / total)
+    for event in run.run():
+        if isinstance(event, Validation):
+            checkpoint.save(job.folder, run, time.perf_counter() - begun)
+        tell(run.update / total)
+    write_records(evaluate(job), job.rows_file)
+
+
+def evaluate(job: Job) -> list[AblationRow]:
+    """Greedy plans by the run's best policy (by validation), every one scored by the verifier."""
+    policy = load_policy(job.folder)
+    rows = []
+    for distribution in job.distributions:
+        for robots in ROBOTS:
+            scenarios = job.held_out.scenarios(distribution, robots)
+            for index, (scenario, plan) in enumerate(zip(scenarios, policy.solve_batch(scenarios), strict=True)):
+                completed = verify(scenario, plan).completed
+                rows.append(
+                    AblationRow(job.variant, job.seed, distribution, robots, index, completed, scenario.num_tasks)
+                )
+    return rows
+
+
+def rows_of(job: Job) -> list[AblationRow]:
+    """The rows of a finished run.
+
+    Raises:
+        ConfigError: if they are not those that its job asks for.
+    """
+    rows = RowsFile(job.rows_file, AblationRow).rows
+    wanted = [
+        (job.variant, job.seed, distribution, robots, index)
+        for distribution in job.distributions
+        for robots in ROBOTS
+        for index in range(job.held_out.count)
+    ]
+    if [(row.variant, row.seed, row.distribution, row.robots, row.scenario) for row in rows] != wanted:
+        raise ConfigError(f"{job.rows_file} holds other rows than its run has; delete it, and run the command again")
+    return rows
+
+
+def _begin(job: Job) -> tuple[Reinforce, float]:
+    if not (job.folder / "config.json").exists():
+        shutil.rmtree(job.folder, ignore_errors=True)  # killed before anything was decided
+        return checkpoint.start(job.folder, job.config), 0.0
+    if checkpoint.saved_config(job.folder) != job.config:
+        raise ConfigError(f"{job.folder} holds a run of another configuration; expected a new folder for the study")
+    return checkpoint.resume(job.folder)
