@@ -49,7 +49,15 @@ class GraphedRollout:
 
     @torch.no_grad()
     def sample(self, scenarios: ScenarioBatch, seed: int) -> Rollout:
-        """Sampled missions with their segments, as `roll_out` would give them."""
+        """Sampled missions with their segments, as `roll_out` would give them.
+
+        Args:
+            scenarios: S scenarios.
+            seed: of the draws.
+
+        Raises:
+            ConfigError: if the network gives probabilities that are not finite.
+        """
         samples = self._samples
         with autocast(scenarios.device, self._precision):
             encoding = self._network.encode(Tasks.of_batch(scenarios))
@@ -61,13 +69,14 @@ class GraphedRollout:
         segments, log_prob = [], torch.zeros(len(mission.actor), device=scenarios.device)
         while True:
             segment, gained = graph.run()
+            # Now, not at the end: a mission that never takes a legal task might go on for very long.
+            if not torch.isfinite(gained).all():
+                raise ConfigError(NOT_FINITE)
             segments.append(cloned(segment.lively()))
             log_prob += gained
             mission = graph._state.mission
             if bool(mission.done.all()):
                 break
-        if not torch.isfinite(log_prob).all():
-            raise ConfigError(NOT_FINITE)
         return Rollout(mission.cost(), mission.completed(), log_prob, segments=segments)
 
     @torch.no_grad()

@@ -208,7 +208,7 @@ class Reinforce:
         following = self._graphed.follow if self._graphed else partial(follow, self.network)
         segments = following(scenarios, plans.routes[rows])
         decisions = sum(int(segment.live.sum()) for segment in segments)
-        wanted = torch.full((len(rows), 1), -len(rows) / decisions, device=self.device)
+        wanted = torch.full((len(rows), 1), -len(rows) / max(1, decisions), device=self.device)
         return accumulate_gradients(self.network, scenarios, segments, wanted, precision=config.precision), decisions
 
     def validate(self) -> Validation:

@@ -55,7 +55,7 @@ class CandidateDecoder(nn.Module):
         """
         s, g, k = candidates.index.shape
         at = candidates.index.reshape(s, g * k, 1).expand(-1, -1, embeddings.shape[-1])
-        known = embeddings.gather(1, at).view(s, g, k, -1)
+        known = embeddings.gather(1, at).view(s, g, k, embeddings.shape[-1])
         mission = self.mission(candidates.mission)[:, :, None]
         task = self.task(candidates.task) + known + mission
         robot = self.robot(candidates.robot) + mission
