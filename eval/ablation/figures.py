@@ -98,7 +98,10 @@ def draw_curves(study: Study) -> Figure:
             axes.plot(mean.index, 100 * mean, color=colour, linewidth=2, label=variant)
         axes.set_title(question.title, fontsize=10, color=INK, loc="left")
         axes.xaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")
-        axes.legend(frameon=False, loc="lower right", fontsize=8, labelcolor=INK)
+        axes.legend(
+            frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.08), ncols=4, fontsize=8, labelcolor=INK,
+            handlelength=1.2, columnspacing=1.0,
+        )  # fmt: skip
     for axes in panels[len(study.questions) :]:
         axes.set_axis_off()
     figure.supxlabel("episodes sampled", fontsize=9, color=FAINT)

@@ -18,7 +18,9 @@ import pytest
 from mrta_zoo.cli import main
 from mrta_zoo.eval.ablation.held_out import HeldOut
 from mrta_zoo.eval.ablation.questions import QUESTIONS, choose, needed
+from mrta_zoo.eval.ablation.study import Study
 from mrta_zoo.eval.ablation.variants import CAPAM, REFERENCE, Budget, all_variants
+from mrta_zoo.eval.plot_history import LearningCurve
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.scenarios import draw
@@ -104,6 +106,19 @@ def test_the_study_leaves_rows_report_and_pictures(straight: Path) -> None:
     mine = [row for row in rows if row["variant"] == first["variant"] and row["seed"] == first["seed"]]
     # Each number of robots has as many scenarios, so that the mean of means is the mean.
     assert float(first["percent"]) == pytest.approx(100 * sum(int(row["completed"]) for row in mine) / (6 * len(mine)))
+
+
+def test_variants_that_hardly_learned_are_named() -> None:
+    # Gains of 3.125 and 0 points (the best, not the last, counts): 1.56 in the mean; of 0.4 and 0.6: 0.5.
+    curves = {
+        ("capam", 0): LearningCurve("", (0, 8, 16), (0.25, 0.28125, 0.27)),
+        ("capam", 1): LearningCurve("", (0, 8, 16), (0.5, 0.49, 0.48)),
+        ("am", 0): LearningCurve("", (0, 8), (0.5, 0.504)),
+        ("am", 1): LearningCurve("", (0, 8), (0.5, 0.506)),
+    }
+    variants = {name: all_variants(Budget())[name] for name in ("capam", "am")}
+    study = Study(questions=(), variants=variants, budget=Budget(), seeds=2, rows=(), curves=curves)
+    assert study.hardly_trained() == ["am"]
 
 
 def test_a_finished_study_is_not_repeated(straight: Path, capsys: pytest.CaptureFixture[str]) -> None:
