@@ -37,10 +37,12 @@ ALLOWED = {"torch", "torchgen", "functorch", "numpy", "mrta_zoo", "typing_extens
     "sympy", "mpmath", "filelock", "networkx", "jinja2", "markupsafe", "fsspec",  # what torch itself requires
 }
 
+OURS = ("__editable__", "_sysconfigdata")  # how this package is installed, and a part of the standard library
+
 class Refuse:
     def find_spec(self, name, path=None, target=None):
         top = name.partition(".")[0]
-        if top not in ALLOWED and top not in sys.stdlib_module_names and not top.startswith("__editable__"):
+        if top not in ALLOWED and top not in sys.stdlib_module_names and not top.startswith(OURS):
             raise ModuleNotFoundError(f"this machine has no {name}", name=name)
 
 sys.meta_path.insert(0, Refuse())
@@ -154,5 +156,5 @@ def test_what_it_cannot_do_is_told(tmp_path: Path) -> None:
         bare.train(TINY, tmp_path / "out")
     with pytest.raises(ConfigError, match="baseline is 'rollout', which needs SciPy; expected samples"):
         bare.train(replace(TINY, baseline="rollout"), tmp_path / "out")
-    with pytest.raises(ConfigError, match="nothing.json: not a configuration"):
+    with pytest.raises(ConfigError, match="not a configuration"):
         bare.read_config(tmp_path / "nothing.json")
