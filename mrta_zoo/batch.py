@@ -137,7 +137,7 @@ class BatchMission:
         untaken: (B, N) bool; padding counts as taken.
         finish: (B, N) float64 finish of each taken task, infinite for the others.
         taken_by: (B, N) int64 robot that took each task, or -1.
-        order: (B, N) int64 how many decisions of its mission came before a task was taken, or -1.
+        order: (B, N) int64 how many steps of the batch came before a task was taken, or -1.
         finish_if: (B, M, N) float64 when each robot would finish each task, were it its next.
     """
 

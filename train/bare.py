@@ -52,7 +52,12 @@ def train(
         compiled: see `Reinforce`.
         fit: once REINFORCE has begun, set the number of updates to what `seconds` has room for.
         resume: go on from OUT.last.npz.
+
+    Raises:
+        ConfigError: if there is imitation to be done and no plans, or the baseline is not "samples".
     """
+    if config.baseline != "samples":
+        raise ConfigError(f"baseline is {config.baseline!r}, which needs SciPy; expected samples")
     begun = time.perf_counter()
     run = Reinforce(config, options=RunOptions(workers, compiled))
     spent = _resume(out, run) if resume else 0.0

@@ -1,0 +1,166 @@
+"""Training with torch and numpy alone: it needs nothing else, and an interrupted run ends in the same bits."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import asdict, replace
+from itertools import count
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from sentences import check_sentence
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.policies.capam.config import NetworkConfig
+from mrta_zoo.train import bare, experts
+from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.experts import make_shard
+from mrta_zoo.train.presets import PRESETS
+from mrta_zoo.train.reinforce import Reinforce
+
+TINY = TrainConfig(
+    network=NetworkConfig(embedding=16, heads=2, decoder="candidates", decision_layers=1, candidates=6, peers=2),
+    tasks=(6, 9), task_weights=(1.0, 2.0), reference_tasks=9, min_robots=2, max_robots=3, generator="mixture",
+    imitation_updates=4, imitation_plans=12, imitation_batch=4, scenarios=2, samples=2, updates=4, epoch=2,
+    validation_scenarios=4, device="cpu",
+)  # fmt: skip
+
+ALONE = '''
+import sys
+
+ALLOWED = {"torch", "torchgen", "functorch", "numpy", "mrta_zoo", "typing_extensions", "sitecustomize"} | {
+    "sympy", "mpmath", "filelock", "networkx", "jinja2", "markupsafe", "fsspec",  # what torch itself requires
+}
+
+OURS = ("__editable__", "_sysconfigdata")  # how this package is installed, and a part of the standard library
+
+class Only:
+    """A finder that finds no third party's packages."""
+
+    def __init__(self, finder):
+        self.finder = finder
+
+    def find_spec(self, name, path=None, target=None):
+        top = name.partition(".")[0]
+        if top in ALLOWED or top in sys.stdlib_module_names or top.startswith(OURS):
+            return self.finder.find_spec(name, path, target)
+        return None
+
+sys.meta_path[:] = [Only(finder) for finder in sys.meta_path]
+for name in ("gymnasium", "pettingzoo", "msgspec", "tyro", "rich", "tensorboard", "safetensors", "scipy", "numba"):
+    assert name not in sys.modules
+    try:
+        __import__(name)
+    except ModuleNotFoundError:
+        pass
+    else:
+        raise AssertionError(f"{name} is not refused")
+from mrta_zoo.train.bare import main
+main()
+'''
+
+
+@pytest.fixture
+def plans(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr(experts, "SHARD", 12)
+    monkeypatch.setattr(experts, "ITERATIONS_A_TASK", 1)
+    (tmp_path / "plans").mkdir()
+    make_shard(TINY, 0, tmp_path / "plans")
+    return tmp_path / "plans"
+
+
+def arrays(path: Path) -> dict[str, np.ndarray]:
+    with np.load(path, allow_pickle=False) as file:
+        return {name: file[name] for name in file.files}
+
+
+def about(path: Path) -> Any:
+    return json.loads(str(arrays(path)["about"]))
+
+
+def test_trains_with_torch_and_numpy_alone(tmp_path: Path, plans: Path) -> None:
+    (tmp_path / "config.json").write_text(json.dumps(asdict(TINY)))
+    command = [sys.executable, "-c", ALONE, "config.json", "out", "--plans", "plans"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=240, check=False)
+    assert done.returncode == 0, done.stderr
+    assert about(tmp_path / "out.last.npz")["update"] == 8
+    history = json.loads((tmp_path / "out.json").read_text())["history"]
+    assert [each["update"] for each in history] == [0, 2, 4, 6, 8]
+
+    # Here, with everything installed, the same run gives the same bits.
+    bare.train(TINY, tmp_path / "here", plans)
+    there, here = arrays(tmp_path / "out.last.npz"), arrays(tmp_path / "here.last.npz")
+    assert there.keys() == here.keys()
+    assert all(np.array_equal(there[name], here[name]) for name in here if name != "about")
+
+
+def test_writes_the_best_weights_by_validation(tmp_path: Path, plans: Path) -> None:
+    bare.train(TINY, tmp_path / "out", plans)
+    history = about(tmp_path / "out.last.npz")["history"]
+    best = max(history, key=lambda each: (each["completion"], -each["cost"]))
+    assert about(tmp_path / "out.npz")["update"] == best["update"]
+    run = Reinforce(TINY)
+    assert arrays(tmp_path / "out.npz").keys() == {"about", *run.network.state_dict()}
+
+
+@pytest.mark.parametrize("sharing", ["shared", "independent"])
+def test_interrupted_and_resumed_is_uninterrupted(
+    tmp_path: Path, plans: Path, monkeypatch: pytest.MonkeyPatch, sharing: str
+) -> None:
+    config = replace(TINY, sharing=sharing)  # type: ignore[arg-type]
+    bare.train(config, tmp_path / "straight", plans)
+    stops = []
+    for seconds in (4, 5, 4):  # by a clock that moves on by one each time somebody looks
+        clock = count()
+        monkeypatch.setattr(bare, "time", SimpleNamespace(perf_counter=lambda clock=clock: next(clock)))
+        bare.train(config, tmp_path / "broken", plans, seconds=seconds, resume=bool(stops))
+        stops.append(about(tmp_path / "broken.last.npz")["update"])
+    assert stops == sorted(set(stops))
+    assert 0 < stops[0] < 4 < stops[-1] < 8, "once in imitation, once in REINFORCE"
+    bare.train(config, tmp_path / "broken", plans, resume=True)
+    straight, broken = arrays(tmp_path / "straight.last.npz"), arrays(tmp_path / "broken.last.npz")
+    assert straight.keys() == broken.keys()
+    assert any(name.startswith("adam/") for name in straight)
+    for name, value in straight.items():
+        if name != "about":
+            assert np.array_equal(value, broken[name]), name
+    assert about(tmp_path / "broken.last.npz")["update"] == 8
+
+
+def test_configurations_come_back(tmp_path: Path) -> None:
+    for config in (TINY, *PRESETS.values()):
+        (tmp_path / "config.json").write_text(json.dumps(asdict(config)))
+        assert bare.read_config(tmp_path / "config.json") == config
+
+
+@pytest.mark.parametrize(
+    ("text", "part"),
+    [
+        ("{", "not a configuration"),
+        ("[1]", "not a configuration"),
+        ('{"updates": 4, "learning_rte": 1}', "learning_rte"),
+        ('{"network": {"embeding": 32}}', "embeding"),
+        ('{"updates": "four"}', "not a configuration"),
+        ('{"updates": 0}', "updates is 0; expected a whole number >= 1"),
+        ('{"network": {"heads": 7}}', "embedding is 128; expected a multiple of heads, 7"),
+    ],
+)
+def test_bad_configurations_are_told(tmp_path: Path, text: str, part: str) -> None:
+    (tmp_path / "config.json").write_text(text)
+    with pytest.raises(ConfigError) as caught:
+        bare.read_config(tmp_path / "config.json")
+    check_sentence(caught.value, part)
+
+
+def test_what_it_cannot_do_is_told(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="there is imitation to be done; name a folder of plans"):
+        bare.train(TINY, tmp_path / "out")
+    with pytest.raises(ConfigError, match="baseline is 'rollout', which needs SciPy; expected samples"):
+        bare.train(replace(TINY, baseline="rollout"), tmp_path / "out")
+    with pytest.raises(ConfigError, match="not a configuration"):
+        bare.read_config(tmp_path / "nothing.json")
