@@ -34,8 +34,8 @@ class Candidates:
         valid: (S, G, K) bool, false where there are fewer than K.
         task: (S, G, K, len(TASK_COLUMNS)) what is known of each:
             where it lies from the robot, and on the map (dx, dy, x, y, in L);
-            time to get there and to do it (travel, work); half of that from the finish to the deadline (slack; tightness
-            is 1 / (1 + 10 times the whole)); a quarter of that from now to the deadline (left);
+            time to get there and to do it (travel, work); half of that from the finish to the deadline (slack;
+            tightness is 1 / (1 + 10 times the whole)); a quarter of that from now to the deadline (left);
             by how much the robot is there before the earliest, and the second peer (head_start, second_head_start);
             the share of the peers that could do it in time (rivals);
             time from it to the nearest and the second of its neighbours that could still be done after it (next_gap,
