@@ -8,7 +8,7 @@ from __future__ import annotations
 import csv
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import tyro
 
@@ -29,13 +29,15 @@ class LearningCurve:
 
     Attributes:
         name: what the legend calls it.
-        episodes: missions sampled so far, for each validation.
+        episodes: missions sampled so far, for each validation; 0 as long as plans are imitated.
         completion: greedy completion rate then, 0..1.
+        updates: gradient steps so far, for each validation; empty if not known.
     """
 
     name: str
     episodes: tuple[int, ...]
     completion: tuple[float, ...]
+    updates: tuple[int, ...] = ()
 
 
 def read_history(path: Path) -> LearningCurve:
@@ -49,7 +51,10 @@ def read_history(path: Path) -> LearningCurve:
         with file.open(newline="", encoding="utf-8") as lines:
             rows = list(csv.DictReader(lines))
         return LearningCurve(
-            path.stem, tuple(int(row["episodes"]) for row in rows), tuple(float(row["completion"]) for row in rows)
+            name=path.stem,
+            episodes=tuple(int(row["episodes"]) for row in rows),
+            updates=tuple(int(row["update"]) for row in rows),
+            completion=tuple(float(row["completion"]) for row in rows),
         )
     except OSError as error:
         raise ConfigError(f"{file}: {(error.strerror or str(error)).lower()}; expected a run's history.csv") from None
@@ -57,17 +62,19 @@ def read_history(path: Path) -> LearningCurve:
         raise ConfigError(f"{file}: not a run's history.csv ({error})") from None
 
 
-def draw_history(curves: list[LearningCurve]) -> Figure:
-    """Completion in percent against episodes, one line a run."""
+def draw_history(curves: list[LearningCurve], by: Literal["episodes", "updates"] = "episodes") -> Figure:
+    """Completion in percent against episodes or updates, one line a run; dots where plans are still imitated."""
     figure = Figure(figsize=(8, 4.2), layout="constrained")
     axes = figure.add_subplot()
     for curve, colour in zip(
         curves, ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9") * 9, strict=False
     ):
-        axes.plot(
-            curve.episodes, [100 * each for each in curve.completion], label=curve.name, color=colour, linewidth=1.5
-        )
-    axes.set_xlabel("episodes sampled")
+        along, percent = getattr(curve, by), [100 * each for each in curve.completion]
+        axes.plot(along, percent, label=curve.name, color=colour, linewidth=1.5)
+        imitated = sum(episodes == 0 for episodes in curve.episodes)
+        if imitated > 1:
+            axes.plot(along[:imitated], percent[:imitated], "o", color=colour, label=f"{curve.name}: imitates plans")
+    axes.set_xlabel("episodes sampled" if by == "episodes" else "updates")
     axes.set_ylabel("validation completion, %")
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")
     plain(axes)
@@ -79,14 +86,16 @@ def main(
     runs: Annotated[tuple[Path, ...], tyro.conf.Positional],
     /,
     out: Path,
+    by: Literal["episodes", "updates"] = "episodes",
 ) -> None:
     """Draw the learning curves of training runs.
 
     Args:
         runs: folders of runs, or copies of their history.csv.
         out: the picture, .png, .svg or .pdf.
+        by: what goes along: episodes sampled, or updates.
     """
-    draw_history([read_history(run) for run in runs]).savefig(out, dpi=130)
+    draw_history([read_history(run) for run in runs], by).savefig(out, dpi=130)
 
 
 if __name__ == "__main__":
