@@ -1,0 +1,80 @@
+"""A run prepared here, trained on a bare machine, and collected; plans that are there already."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.policies.neural import load_policy
+from mrta_zoo.train import bare, experts, plans
+from mrta_zoo.train.cli import train_command
+from mrta_zoo.train.config import TrainConfig
+
+TINY = [
+    "--preset",
+    "smoke",
+    "--embedding",
+    "8",
+    "--heads",
+    "2",
+    "--tasks",
+    "6",
+    "--max-robots",
+    "2",
+    "--scenarios",
+    "2",
+    "--samples",
+    "2",
+    "--updates",
+    "2",
+    "--epoch",
+    "1",
+    "--validation-scenarios",
+    "4",
+]
+
+
+def test_a_run_trained_elsewhere_is_collected(tmp_path: Path) -> None:
+    folder = tmp_path / "run"
+    train_command([*TINY, "--out", str(folder), "--prepare"])
+    assert not (folder / "policy.safetensors").exists()
+    config = bare.read_config(folder / "config.json")
+    bare.train(config, folder / "bare")
+    train_command(["--out", str(folder), "--collect"])
+    collected = load_policy(folder).info
+    assert (collected.network, collected.trained["config"]["updates"]) == (config.network, 2)
+    # 3 validations, after 0, 1 and 2 updates; the policy is of one of them
+    rows = (folder / "history.csv").read_text().splitlines()[1:]
+    assert collected.trained["updates"] == int(rows[-1].split(",")[0]) <= 2
+
+    straight = tmp_path / "straight"
+    train_command([*TINY, "--out", str(straight)])
+    assert (straight / "policy.safetensors").read_bytes() == (folder / "policy.safetensors").read_bytes()
+
+
+def test_nothing_to_collect_is_a_sentence(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"bare\.npz: no such file; expected what mrta_zoo\.train\.bare leaves"):
+        train_command(["--out", str(tmp_path), "--collect"])
+    (tmp_path / "bare.npz").write_bytes(b"no archive")
+    with pytest.raises(ConfigError, match=r"bare\.npz: not what mrta_zoo\.train\.bare leaves"):
+        train_command(["--out", str(tmp_path), "--collect"])
+
+
+def test_plans_that_are_there_are_not_made_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(experts, "SHARD", 4)
+    config = TrainConfig(
+        tasks=(5,), reference_tasks=5, max_robots=2, imitation_updates=1, imitation_plans=4, imitation_batch=2
+    )
+    made = experts.make_shard(config, 0, tmp_path)
+    monkeypatch.setattr(plans, "ProcessPoolExecutor", None)  # whoever wants to make plans fails
+    got = plans.make_plans(config, tmp_path)
+    assert made == tmp_path / "0000000.npz"
+    assert [plan.scenario for plan in got] == [experts.expert_scenario(config, number) for number in range(4)]
+
+
+@pytest.mark.parametrize("workers", ["0", "5000"])
+def test_number_of_workers_is_checked(tmp_path: Path, workers: str) -> None:
+    with pytest.raises(ConfigError, match="expected a whole number from 1 to"):
+        train_command([*TINY, "--out", str(tmp_path), "--workers", workers])
