@@ -57,8 +57,8 @@ class TrainCommand:
     """Compile the decoder's layers: a minute at first, for quicker steps on a GPU."""
     threads: int = 1
     """CPU threads; 0 leaves the choice to torch. On a quiet machine two train faster than one: 505 rather than 363
-    episodes a second with fast, 1795 rather than 1520 with smoke. On a busy one they can be far slower than one. Results are
-    the same only for the same number."""
+    episodes a second with fast, 1795 rather than 1520 with smoke. On a busy one they can be far slower. Results are the
+    same only for the same number."""
     config: Annotated[TrainConfig, tyro.conf.arg(name="")] = field(default_factory=TrainConfig)
 
 
