@@ -1,7 +1,8 @@
 """Repeating the same GPU work without the CPU launching each of its kernels: CUDA graphs of rollouts.
 
-A decision is some 300 small kernels, which a CPU launches more slowly than a GPU runs them. A graph, recorded once for
-missions of one size, launches a whole segment of decisions at once.
+A decision is many small kernels. A graph, recorded once for missions of one size, launches a whole segment of decisions
+at once. What that gains depends on how long the kernels are: with 2,048 missions of 200 tasks on an H200 a rollout took
+1.33 s instead of 1.37.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ class Graph(Generic[State, Out]):
     def __init__(
         self, function: Callable[[State], Out], state: State, generator: torch.Generator | None = None
     ) -> None:
-        self._state = copy.deepcopy(state)
+        self.state = copy.deepcopy(state)
         stream = torch.cuda.Stream()
         stream.wait_stream(torch.cuda.current_stream())
         with torch.cuda.stream(stream):
@@ -42,11 +43,11 @@ class Graph(Generic[State, Out]):
         self._graph = torch.cuda.CUDAGraph()
         if generator is not None:
             self._graph.register_generator_state(generator)
-        kept = list(tensors(self._state))
+        kept = list(tensors(self.state))
         with torch.cuda.graph(self._graph):
-            self._out = function(self._state)
+            self._out = function(self.state)
             # What the function put in place of a tensor goes where that tensor is, for the next run to find.
-            for old, new in zip(kept, list(tensors(self._state)), strict=True):
+            for old, new in zip(kept, list(tensors(self.state)), strict=True):
                 if new is not old:
                     old.copy_(new)
         self._kept = kept
@@ -75,8 +76,3 @@ def tensors(tree: Any) -> Iterator[Tensor]:
     elif hasattr(tree, "__dict__") and not isinstance(tree, torch.nn.Module):
         for name in sorted(vars(tree)):
             yield from tensors(vars(tree)[name])
-
-
-def cloned(tree: Any) -> Any:
-    """A copy of a tree of dataclasses and tensors, which later runs leave alone."""
-    return copy.deepcopy(tree)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +15,7 @@ from mrta_zoo.policies.capam.inputs import Tasks
 from mrta_zoo.policies.rollout import NOT_FINITE, Rollout, Segment, run_segment
 from mrta_zoo.policies.sharing import Network
 from mrta_zoo.rules import MaskRule
-from mrta_zoo.train.cuda_graph import Graph, cloned
+from mrta_zoo.train.cuda_graph import Graph
 from mrta_zoo.train.imitation import follow_segment
 from mrta_zoo.train.precision import Precision, autocast
 
@@ -72,9 +73,9 @@ class GraphedRollout:
             # Now, not at the end: a mission that never takes a legal task might go on for very long.
             if not torch.isfinite(gained).all():
                 raise ConfigError(NOT_FINITE)
-            segments.append(cloned(segment.lively()))
+            segments.append(copy.deepcopy(segment.lively()))
             log_prob += gained
-            mission = graph._state.mission
+            mission = graph.state.mission
             if bool(mission.done.all()):
                 break
         return Rollout(mission.cost(), mission.completed(), log_prob, segments=segments)
@@ -90,8 +91,8 @@ class GraphedRollout:
         graph = self._graph(key, self._follow, _Missions(encoding, mission, rows, routes, position))
         segments = []
         while True:
-            segments.append(cloned(graph.run().lively()))
-            if bool(graph._state.mission.done.all()):
+            segments.append(copy.deepcopy(graph.run().lively()))
+            if bool(graph.state.mission.done.all()):
                 return segments
 
     def _graph(self, key: tuple[int, ...], function: Any, state: _Missions) -> Graph[_Missions, Any]:

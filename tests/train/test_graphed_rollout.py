@@ -21,7 +21,7 @@ from mrta_zoo.policies.rollout import Segment, roll_out
 from mrta_zoo.policies.sharing import Network, build_network
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.train import graphed_rollout
-from mrta_zoo.train.cuda_graph import cloned, tensors
+from mrta_zoo.train.cuda_graph import tensors
 from mrta_zoo.train.experts import ExpertPlan
 from mrta_zoo.train.graphed_rollout import GraphedRollout
 from mrta_zoo.train.imitation import PlanBatch, follow
@@ -40,19 +40,19 @@ class Eager:
 
     def __init__(self, function: Callable[[Any], Any], state: Any, generator: torch.Generator | None = None) -> None:
         type(self).made += 1
-        self._function, self._state = function, copy.deepcopy(state)
+        self._function, self.state = function, copy.deepcopy(state)
         self._out: tuple[torch.Tensor, ...] = ()
 
     def load(self, state: Any) -> None:
-        shapes = [each.shape for each in tensors(self._state)]
+        shapes = [each.shape for each in tensors(self.state)]
         assert shapes == [each.shape for each in tensors(state)], "a graph serves one size"
-        self._state = copy.deepcopy(state)
+        self.state = copy.deepcopy(state)
 
     def run(self) -> Any:
         for each in self._out:  # what the last run returned is lost
             each.zero_()
-        out = self._function(self._state)
-        own = {id(each) for each in tensors(self._state)}
+        out = self._function(self.state)
+        own = {id(each) for each in tensors(self.state)}
         self._out = tuple(each for each in tensors(out) if id(each) not in own)
         return out
 
@@ -207,7 +207,7 @@ def test_every_tensor_of_a_mission_is_found() -> None:
     assert others == {"scenarios", "mask_rule", "_decisions"}, "what is new here must be found by `tensors`, too"
 
     mission.step(torch.tensor([0, 0]))  # puts new tensors in place of old ones
-    copied = cloned(mission)
+    copied = copy.deepcopy(mission)
     assert all(torch.equal(*pair) for pair in zip(tensors(mission), tensors(copied), strict=True))
     assert not {id(each) for each in tensors(mission)} & {id(each) for each in tensors(copied)}
 
