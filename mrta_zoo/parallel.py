@@ -126,8 +126,7 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
 
     def observe(self, agent: str) -> Any:
         """What an agent sees now; any possible agent, at any time after the first reset."""
-        seen = self._world.seen_by(self._world.robot(agent))
-        return seen if self._world.flat else {"observation": seen, "action_mask": self.mask(agent)}
+        return self._world.seen_by(self._world.robot(agent), self.mask(agent))
 
     def mask(self, agent: str) -> npt.NDArray[np.int8]:
         """(max_tasks + 1,) int8, 1 where the agent may choose in this step."""

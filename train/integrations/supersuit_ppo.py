@@ -1,0 +1,73 @@
+"""SuperSuit: its wrappers and its vector environment, with SB3's PPO, which knows no masks.
+
+The parallel form, flat: padded, flattened, two steps stacked, and told whose they are; SuperSuit makes each robot a row
+of a vector environment. PPO has to learn what is legal, for an illegal action ends the episode; when it has been
+trained, it takes the likeliest action that the mask allows.
+
+Run it with ``python -m mrta_zoo.train.integrations.supersuit_ppo --seed 0``.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import supersuit
+import torch
+from pettingzoo.utils.env_logger import EnvLogger
+from stable_baselines3 import PPO
+from stable_baselines3.common.utils import set_random_seed
+
+from mrta_zoo import mrta_v0
+from mrta_zoo.plan import Plan
+from mrta_zoo.scenario import Scenario
+from mrta_zoo.train.integrations.problem import options, show
+
+
+def make_env() -> Any:
+    """The parallel environment in SuperSuit's wrappers."""
+    env = mrta_v0.parallel_env(illegal_reward=-0.1, **options("flat"))
+    env = supersuit.pad_action_space_v0(supersuit.pad_observations_v0(env))
+    return supersuit.agent_indicator_v0(supersuit.frame_stack_v1(supersuit.flatten_v0(env), 2))
+
+
+class Planner:
+    """A trained model in SuperSuit's wrappers, which remember the steps that are stacked."""
+
+    def __init__(self, model: PPO) -> None:
+        self.model = model
+
+    @torch.no_grad()
+    def plan(self, scenario: Scenario) -> Plan:
+        """The plan that the likeliest legal actions make."""
+        env = make_env()
+        observations, infos = env.reset(options={"scenario": scenario})
+        while env.agents:
+            seen = torch.as_tensor(np.stack([observations[agent] for agent in env.agents]))
+            legal = torch.as_tensor(np.stack([infos[agent]["action_mask"] for agent in env.agents])).bool()
+            logits = self.model.policy.get_distribution(seen).distribution.logits
+            actions = logits.masked_fill(~legal, -torch.inf).argmax(-1).tolist()
+            observations, _, _, _, infos = env.step(dict(zip(env.agents, actions, strict=True)))
+        return Plan(tuple(map(tuple, env.unwrapped.mission.routes)), scenario.name, "supersuit")
+
+
+def train(seed: int = 0, steps: int = 60_000) -> Planner:
+    """Train on the small problem.
+
+    Args:
+        seed: of weights, scenarios and choices.
+        steps: of the robots, those in which they can but wait included.
+    """
+    EnvLogger.suppress_output()  # a line for each illegal action
+    envs = supersuit.pettingzoo_env_to_vec_env_v1(make_env())
+    envs = supersuit.concat_vec_envs_v1(envs, 16, num_cpus=1, base_class="stable_baselines3")
+    set_random_seed(seed)  # by `PPO(seed=…)` SB3 would seed the environments, in a way that SuperSuit's don't know
+    envs.venv.reset(seed=seed)
+    model = PPO(
+        "MlpPolicy", envs, n_steps=64, batch_size=256, n_epochs=8, gamma=1.0, learning_rate=1e-3, ent_coef=0.01
+    )
+    return Planner(model.learn(steps))
+
+
+if __name__ == "__main__":
+    show(train)
