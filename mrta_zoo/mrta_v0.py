@@ -53,8 +53,8 @@ reward is `illegal_reward`, the others' is 0. One outside the action space raise
 Observations
 ------------
 ``{"observation": {"tasks", "robots", "ego", "mission"}, "action_mask"}``; `mrta_zoo.observation` lists the columns.
-With ``observation="masked"`` it is ``{"observation", "action_mask"}`` with one vector, the same tables one after another
-(`observation.split` takes it apart again); with ``observation="flat"`` the vector alone, and the mask is in
+With ``observation="masked"`` it is ``{"observation", "action_mask"}`` with one vector, the same tables one after
+another (`observation.split` takes it apart again); with ``observation="flat"`` the vector alone, and the mask is in
 ``infos[agent]["action_mask"]``. `observe` answers for every possible agent at any time; one
 that the scenario does not have sees an ``ego`` of zeros and an empty mask. `state()` is the vector of tasks, robots and
 mission without what belongs to one observer; its size is ``8 max_tasks + 6 max_robots + 3``.

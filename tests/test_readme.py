@@ -10,7 +10,10 @@ import pytest
 from mrta_zoo.io import read_scenario
 
 README = Path(__file__).parents[1] / "README.md"
-BLOCKS = re.findall(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+ALL_BLOCKS = re.findall(r"```python\n(.*?)```", README.read_text(encoding="utf-8"), re.DOTALL)
+OTHER_LIBRARIES = re.compile(r"(rllib|torchrl|stable_baselines3|sb3|supersuit|tianshou)(_|\b)")
+BLOCKS = [block for block in ALL_BLOCKS if not OTHER_LIBRARIES.search(block)]
+"""Those that need another library run in tests/integrations."""
 
 
 def test_there_are_examples() -> None:

@@ -143,7 +143,9 @@ def test_an_observer_can_turn_to_another_mission():
 
 
 def test_flat_holds_the_same_as_the_tables():
-    dicts, flats, masked = (started(seed=4, generator=GENERATOR, observation=form) for form in ("dict", "flat", "masked"))
+    dicts, flats, masked = (
+        started(seed=4, generator=GENERATOR, observation=form) for form in ("dict", "flat", "masked")
+    )
     rng = np.random.default_rng(0)
     while dicts.agents:
         for agent in dicts.possible_agents:

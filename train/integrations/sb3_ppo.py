@@ -30,7 +30,7 @@ class MaskablePolicy:
         return int(action)
 
 
-def train(seed: int = 0, steps: int = 30_000, processes: bool = False) -> MaskablePolicy:
+def train(seed: int = 0, steps: int = 15_000, processes: bool = False) -> MaskablePolicy:
     """Train on the small problem.
 
     Args:
@@ -46,7 +46,7 @@ def train(seed: int = 0, steps: int = 30_000, processes: bool = False) -> Maskab
         vec_env_cls=SubprocVecEnv if processes else DummyVecEnv,
     )
     model = MaskablePPO(
-        "MultiInputPolicy", envs, n_steps=128, batch_size=256, gamma=1.0, learning_rate=1e-3, ent_coef=0.01, seed=seed
+        "MultiInputPolicy", envs, n_steps=128, batch_size=256, gamma=1.0, learning_rate=2e-3, ent_coef=0.01, seed=seed
     )
     model.learn(steps)
     envs.close()

@@ -1,8 +1,9 @@
 """SuperSuit: its wrappers and its vector environment, with SB3's PPO, which knows no masks.
 
-The parallel form, flat: padded, flattened, two steps stacked, and told whose they are; SuperSuit makes each robot a row
-of a vector environment. PPO has to learn what is legal, for an illegal action ends the episode; when it has been
-trained, it takes the likeliest action that the mask allows.
+The parallel form, flat, each observation with the number of its robot; SuperSuit makes each robot a row of a vector
+environment. PPO has to learn what is legal, for an illegal action ends the episode; when it has been trained, it takes
+the likeliest action that the mask allows. Each further wrapper, as in `fully_wrapped`, makes it slower: SuperSuit turns
+the environment into the AEC form and back for it.
 
 Run it with ``python -m mrta_zoo.train.integrations.supersuit_ppo --seed 0``.
 """
@@ -25,14 +26,19 @@ from mrta_zoo.train.integrations.problem import options, show
 
 
 def make_env() -> Any:
-    """The parallel environment in SuperSuit's wrappers."""
+    """The parallel environment; every observation says whose it is."""
+    return supersuit.agent_indicator_v0(mrta_v0.parallel_env(illegal_reward=-0.1, **options("flat")))
+
+
+def fully_wrapped(steps: int = 2) -> Any:
+    """The same, padded, flattened, and with so many steps in each observation."""
     env = mrta_v0.parallel_env(illegal_reward=-0.1, **options("flat"))
-    env = supersuit.pad_action_space_v0(supersuit.pad_observations_v0(env))
-    return supersuit.agent_indicator_v0(supersuit.frame_stack_v1(supersuit.flatten_v0(env), 2))
+    env = supersuit.flatten_v0(supersuit.pad_action_space_v0(supersuit.pad_observations_v0(env)))
+    return supersuit.agent_indicator_v0(supersuit.frame_stack_v1(env, steps))
 
 
 class Planner:
-    """A trained model in SuperSuit's wrappers, which remember the steps that are stacked."""
+    """A trained model, in the parallel environment."""
 
     def __init__(self, model: PPO) -> None:
         self.model = model
@@ -51,6 +57,21 @@ class Planner:
         return Plan(tuple(map(tuple, env.unwrapped.mission.routes)), scenario.name, "supersuit")
 
 
+def vectorised(env: Any, count: int) -> Any:
+    """So many copies side by side, every robot of each a row, as SB3 wants them."""
+    envs = supersuit.pettingzoo_env_to_vec_env_v1(env)
+    return supersuit.concat_vec_envs_v1(envs, count, num_cpus=1, base_class="stable_baselines3")
+
+
+def learn(envs: Any, steps: int, seed: int = 0) -> PPO:
+    """SB3's PPO on a vector environment."""
+    EnvLogger.suppress_output()  # a line for each illegal action
+    set_random_seed(seed)  # by `PPO(seed=…)` SB3 would seed the environments, in a way that SuperSuit's don't know
+    envs.venv.reset(seed=seed)
+    model = PPO("MlpPolicy", envs, n_steps=64, batch_size=256, n_epochs=8, gamma=1.0, learning_rate=1e-3, ent_coef=0.01)
+    return model.learn(steps)
+
+
 def train(seed: int = 0, steps: int = 60_000) -> Planner:
     """Train on the small problem.
 
@@ -58,15 +79,7 @@ def train(seed: int = 0, steps: int = 60_000) -> Planner:
         seed: of weights, scenarios and choices.
         steps: of the robots, those in which they can but wait included.
     """
-    EnvLogger.suppress_output()  # a line for each illegal action
-    envs = supersuit.pettingzoo_env_to_vec_env_v1(make_env())
-    envs = supersuit.concat_vec_envs_v1(envs, 16, num_cpus=1, base_class="stable_baselines3")
-    set_random_seed(seed)  # by `PPO(seed=…)` SB3 would seed the environments, in a way that SuperSuit's don't know
-    envs.venv.reset(seed=seed)
-    model = PPO(
-        "MlpPolicy", envs, n_steps=64, batch_size=256, n_epochs=8, gamma=1.0, learning_rate=1e-3, ent_coef=0.01
-    )
-    return Planner(model.learn(steps))
+    return Planner(learn(vectorised(make_env(), count=16), steps, seed))
 
 
 if __name__ == "__main__":

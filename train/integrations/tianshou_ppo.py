@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import torch
+from gymnasium import spaces
 from tianshou.algorithm import PPO
 from tianshou.algorithm.modelfree.reinforce import DiscreteActorPolicy
 from tianshou.algorithm.optim import AdamOptimizerFactory
@@ -16,16 +17,18 @@ from tianshou.data import Batch, Collector, VectorReplayBuffer
 from tianshou.env import DummyVectorEnv
 from tianshou.trainer import OnPolicyTrainerParams
 from torch import Tensor, nn
+from torch.distributions import Categorical
 
 from mrta_zoo.gym_view import ActingRobotEnv
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.train.integrations.networks import FORM, Kind, as_policy, build
-from mrta_zoo.train.integrations.problem import options, show
+from mrta_zoo.train.integrations.problem import TASKS, options, show
 
 
 def tensors(observation: Batch) -> dict[str, Any]:
     """Tianshou's batch of observations as a dictionary of tensors."""
-    return observation.to_torch(dtype=torch.float32).to_dict()
+    seen: dict[str, Any] = observation.to_torch(dtype=torch.float32).to_dict()
+    return seen
 
 
 class Actor(nn.Module):
@@ -36,31 +39,65 @@ class Actor(nn.Module):
         self.net = net
 
     def forward(self, obs: Batch, state: Any = None, info: Any = None) -> tuple[Tensor, Any]:
-        """Logits (B, max_tasks)."""
+        """(B, max_tasks) logits, and no state."""
         return self.net.logits(tensors(obs)), state
 
 
-class Critic(Actor):
+class Critic(nn.Module):
     """The value, likewise."""
 
-    def forward(self, obs: Batch, **_: Any) -> Tensor:
-        """Values (B, 1)."""
-        return self.net.value(tensors(obs))[:, None]
+    def __init__(self, net: Any) -> None:
+        super().__init__()
+        self.net = net
+
+    def forward(self, obs: Batch) -> Tensor:
+        """(B, 1) values."""
+        value: Tensor = self.net.value(tensors(obs))[:, None]
+        return value
 
 
-def train(seed: int = 0, epochs: int = 5, network: Kind = "mlp") -> Policy:
-    torch.manual_seed(seed); np.random.seed(seed)
-    envs = DummyVectorEnv([lambda: ActingRobotEnv(**options(FORM[network])) for _ in range(8)])
-    envs.seed([1000*seed+i for i in range(8)])
-    view = ActingRobotEnv(**options(FORM[network]))
-    net = build(network, view.observation_space, view.action_space, seed)
-    policy = DiscreteActorPolicy(actor=Actor(net), dist_fn=lambda logits: torch.distributions.Categorical(logits=logits), action_space=view.action_space, observation_space=view.observation_space)
-    algorithm = PPO(policy=policy, critic=Critic(net), optim=AdamOptimizerFactory(lr=1e-3), gamma=1.0, ent_coef=0.01, max_grad_norm=0.5)
-    collector = Collector(algorithm, envs, VectorReplayBuffer(2048, 8))
-    algorithm.run_training(OnPolicyTrainerParams(
-        training_collector=collector, test_collector=None, max_epochs=epochs, epoch_num_steps=5000, collection_step_num_env_steps=1000,
-        update_step_num_repetitions=6, batch_size=250, test_step_num_episodes=1, verbose=False, show_progress=False))
-    return as_policy({"shared": net})
+def train(seed: int = 0, epochs: int = 10, network: Kind = "mlp") -> Policy:
+    """Train on the small problem.
+
+    Args:
+        seed: of weights, scenarios and choices.
+        epochs: of 1000 decisions each.
+        network: a plain network, or CapAM.
+    """
+    torch.manual_seed(seed)  # Tianshou draws actions from the global generators
+    np.random.seed(seed)  # noqa: NPY002  (and minibatches)
+    form = FORM[network]
+    envs = DummyVectorEnv([lambda: ActingRobotEnv(**options(form)) for _ in range(8)])
+    envs.seed([8 * seed + number for number in range(8)])
+    view = ActingRobotEnv(**options(form))
+    net = build(network, spaces.flatdim(view.observation_space["observation"]), TASKS, seed)
+    policy = DiscreteActorPolicy(
+        actor=Actor(net),
+        dist_fn=lambda logits: Categorical(logits=logits),
+        action_space=view.action_space,
+        observation_space=view.observation_space,
+    )
+    algorithm = PPO(
+        policy=policy,
+        critic=Critic(net),
+        optim=AdamOptimizerFactory(lr=2e-3),
+        gamma=1.0,
+        ent_coef=0.01,
+        max_grad_norm=0.5,
+    )
+    algorithm.run_training(
+        OnPolicyTrainerParams(
+            training_collector=Collector(algorithm, envs, VectorReplayBuffer(1000 + 8 * TASKS, 8)),
+            max_epochs=epochs,
+            epoch_num_steps=1000,
+            collection_step_num_env_steps=1000,
+            update_step_num_repetitions=8,
+            batch_size=250,
+            verbose=False,
+            show_progress=False,
+        )
+    )
+    return as_policy(net)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,115 @@
+"""Each library's policy gets well beyond random choices; CapAM trained by RLlib or TorchRL is one of our policies."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+import torch
+from gymnasium import spaces
+
+from mrta_zoo.generators import UniformGenerator
+from mrta_zoo.policies.heuristics import RandomPolicy
+from mrta_zoo.policies.neural import NeuralPolicy, load_policy
+from mrta_zoo.policies.weights import save_policy
+from mrta_zoo.train.integrations import rllib_ppo, sb3_ppo, supersuit_ppo, tianshou_ppo, torchrl_ppo
+from mrta_zoo.train.integrations.networks import build
+from mrta_zoo.train.integrations.problem import Planner, completions, in_aec_loop
+
+pytestmark = [pytest.mark.integrations, pytest.mark.filterwarnings("ignore")]  # theirs, not ours to mend
+
+
+@cache
+def by_chance() -> npt.NDArray[np.float64]:
+    """Of 200 scenarios random legal choices complete 53 %."""
+    return completions(in_aec_loop(RandomPolicy(seed=0)))
+
+
+def assert_learned(plan: Planner, stated: float) -> None:
+    """At least the stated share, and beyond chance by 5 points and three standard errors of the difference."""
+    shares = completions(plan)
+    gain = shares - by_chance()
+    error = gain.std(ddof=1) / len(gain) ** 0.5
+    assert shares.mean() >= stated
+    assert gain.mean() - 3 * error > 0.05
+
+
+def test_chance() -> None:
+    assert 0.50 < by_chance().mean() < 0.56
+    with pytest.raises(AssertionError):
+        assert_learned(in_aec_loop(RandomPolicy(seed=1)), stated=0.5)
+
+
+def test_sb3() -> None:
+    assert_learned(in_aec_loop(sb3_ppo.train(seed=0)), stated=0.68)
+
+
+def test_sb3_with_processes() -> None:
+    """Eight processes, whose masks are asked for across: the same decisions, so the same policy."""
+    policies = [sb3_ppo.train(seed=0, steps=512, processes=processes) for processes in (False, True)]
+    first, second = (list(policy.model.policy.parameters()) for policy in policies)
+    assert all(torch.equal(a, b) for a, b in zip(first, second, strict=True))
+
+
+def test_supersuit() -> None:
+    assert_learned(supersuit_ppo.train(seed=0).plan, stated=0.63)
+
+
+def test_supersuit_with_every_wrapper() -> None:
+    """Two steps of (10 x 8 + 2 x 7 + 5 + 3) = 102 numbers, each with the robot's number as 2 more: 2 x 102 + 2."""
+    envs = supersuit_ppo.vectorised(supersuit_ppo.fully_wrapped(), count=2)
+    assert envs.observation_space.shape == (206,)
+    model = supersuit_ppo.learn(envs, steps=256)
+    assert model.num_timesteps >= 256
+
+
+def test_tianshou() -> None:
+    assert_learned(in_aec_loop(tianshou_ppo.train(seed=0)), stated=0.68)
+
+
+@pytest.mark.parametrize("sharing", ["shared", "independent"])
+def test_rllib(sharing: Any) -> None:
+    assert_learned(in_aec_loop(rllib_ppo.train(seed=0, sharing=sharing)), stated=0.63)
+
+
+def test_torchrl() -> None:
+    assert_learned(in_aec_loop(torchrl_ppo.train(seed=0)), stated=0.63)
+
+
+@pytest.mark.parametrize("train", [rllib_ppo.train, torchrl_ppo.train], ids=["rllib", "torchrl"])
+def test_capam_is_trained_saved_and_loaded(train: Callable[..., NeuralPolicy], tmp_path: Path) -> None:
+    policy = train(seed=0, network="capam", iterations=4)
+    untrained = build("capam", 0, 0, seed=0).network.state_dict()
+    moved = [name for name, weights in policy.network.state_dict().items() if not torch.equal(weights, untrained[name])]
+    assert len(moved) == len(untrained)
+    save_policy(tmp_path / "mine.safetensors", policy.network, policy.info)
+    assert_learned(in_aec_loop(load_policy(tmp_path / "mine.safetensors")), stated=0.60)
+
+
+def test_rllib_with_other_numbers_of_robots() -> None:
+    """Of the robots that there may be the first episode need not have all."""
+    generator = UniformGenerator(tasks=(5, 8), robots=(1, 4), deadline=(100, 300))
+    options = {"generator": generator, "reward": "completion", "observation": "masked"}
+    algorithm = rllib_ppo.configure(options, seed=0).build_algo()
+    assert algorithm.train()["env_runners"]["num_env_steps_sampled"] >= 1000
+    algorithm.stop()
+
+
+def test_the_observation_of_rllibs_module_is_the_environments() -> None:
+    env = rllib_ppo.RllibEnv({"observation": "dict"})
+    assert list(env.observation_spaces) == [f"robot_{robot}" for robot in range(7)]
+    assert isinstance(env.observation_spaces["robot_6"]["observation"], spaces.Dict)
+
+
+def test_command_line() -> None:
+    command = [sys.executable, "-W", "ignore", "-m", "mrta_zoo.train.integrations.sb3_ppo", "--seed", "3"]
+    shown = subprocess.run([*command, "--steps", "1024"], capture_output=True, text=True, check=True).stdout
+    assert re.search(r"random +5\d\.\d % completed.*\nnearest +7\d\.\d %.*\ntrained +\d\d\.\d %", shown)
