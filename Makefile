@@ -16,7 +16,7 @@ test: $(INSTALLED)
 
 # RLlib, TorchRL, SB3, SuperSuit and Tianshou learn a small problem each, in an environment of their own.
 test-integrations: $(INTEGRATIONS)/installed
-	OMP_NUM_THREADS=1 $(INTEGRATIONS)/bin/python -m pytest -n 2 -m integrations -W ignore tests/integrations
+	OMP_NUM_THREADS=1 $(INTEGRATIONS)/bin/python -m pytest -n 2 --dist loadgroup -m integrations -W ignore tests/integrations
 
 # mypy must see the package as it is installed, with policies/, train/ and eval/ inside mrta_zoo/.
 lint: $(INSTALLED)

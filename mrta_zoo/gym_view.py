@@ -14,7 +14,7 @@ by all robots, which sees in each step what the acting robot sees.
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, get_args
+from typing import Any, get_args
 
 import gymnasium
 import numpy as np
@@ -49,7 +49,7 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
         ConfigError: if an option cannot be used.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": list(RENDER_MODES), "render_fps": 4}
+    metadata = {"render_modes": list(RENDER_MODES), "render_fps": 4}  # noqa: RUF012  (as in Gymnasium's own class)
 
     def __init__(self, *, on_illegal: Illegal = "terminate", illegal_reward: float = -1.0, **options: Any) -> None:
         one_of("on_illegal", on_illegal, get_args(Illegal))

@@ -47,8 +47,8 @@ class MaskedModule(TorchRLModule, ValueFunctionAPI):
 
     def setup(self) -> None:
         """Make the network; RLlib calls it."""
-        features = spaces.flatdim(self.observation_space["observation"])
-        self.net = build(features=features, actions=int(self.action_space.n), **self.model_config)
+        features, actions = spaces.flatdim(self.observation_space["observation"]), int(self.action_space.n)
+        self.net = build(self.model_config["kind"], features, actions, self.model_config["seed"])
 
     def _forward(self, batch: dict[str, Any], **_: Any) -> dict[str, Tensor]:
         return {Columns.ACTION_DIST_INPUTS: self.net.logits(batch[Columns.OBS])}

@@ -30,17 +30,18 @@ class MaskablePolicy:
         return int(action)
 
 
-def train(seed: int = 0, steps: int = 15_000, processes: bool = False) -> MaskablePolicy:
+def train(seed: int = 0, steps: int = 15_000, copies: int = 8, processes: bool = False) -> MaskablePolicy:
     """Train on the small problem.
 
     Args:
         seed: of weights, scenarios and choices.
         steps: decisions.
-        processes: whether each of the 8 environments has a process of its own.
+        copies: environments side by side.
+        processes: whether each has a process of its own.
     """
     envs = make_vec_env(
         ActingRobotEnv,
-        n_envs=8,
+        n_envs=copies,
         seed=seed,
         env_kwargs=options("masked"),
         vec_env_cls=SubprocVecEnv if processes else DummyVecEnv,

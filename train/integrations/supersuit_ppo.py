@@ -1,9 +1,8 @@
 """SuperSuit: its wrappers and its vector environment, with SB3's PPO, which knows no masks.
 
-The parallel form, flat, each observation with the number of its robot; SuperSuit makes each robot a row of a vector
-environment. PPO has to learn what is legal, for an illegal action ends the episode; when it has been trained, it takes
-the likeliest action that the mask allows. Each further wrapper, as in `fully_wrapped`, makes it slower: SuperSuit turns
-the environment into the AEC form and back for it.
+The parallel form, flat; SuperSuit makes each robot a row of a vector environment. PPO has to learn what is legal, for
+an illegal action ends the episode; when it has been trained, it takes the likeliest action that the mask allows.
+Wrappers, as in `wrapped`, each make it slower: SuperSuit turns the environment into the AEC form and back for them.
 
 Run it with ``python -m mrta_zoo.train.integrations.supersuit_ppo --seed 0``.
 """
@@ -26,14 +25,13 @@ from mrta_zoo.train.integrations.problem import options, show
 
 
 def make_env() -> Any:
-    """The parallel environment; every observation says whose it is."""
-    return supersuit.agent_indicator_v0(mrta_v0.parallel_env(illegal_reward=-0.1, **options("flat")))
+    """The parallel environment."""
+    return mrta_v0.parallel_env(illegal_reward=-0.1, **options("flat"))
 
 
-def fully_wrapped(steps: int = 2) -> Any:
-    """The same, padded, flattened, and with so many steps in each observation."""
-    env = mrta_v0.parallel_env(illegal_reward=-0.1, **options("flat"))
-    env = supersuit.flatten_v0(supersuit.pad_action_space_v0(supersuit.pad_observations_v0(env)))
+def wrapped(steps: int = 2) -> Any:
+    """The same padded, flattened, with so many steps in each observation, and the number of its robot."""
+    env = supersuit.flatten_v0(supersuit.pad_action_space_v0(supersuit.pad_observations_v0(make_env())))
     return supersuit.agent_indicator_v0(supersuit.frame_stack_v1(env, steps))
 
 

@@ -56,7 +56,7 @@ class Critic(nn.Module):
         return value
 
 
-def train(seed: int = 0, epochs: int = 10, network: Kind = "mlp") -> Policy:
+def train(seed: int = 0, epochs: int = 5, network: Kind = "mlp") -> Policy:
     """Train on the small problem.
 
     Args:
@@ -69,7 +69,7 @@ def train(seed: int = 0, epochs: int = 10, network: Kind = "mlp") -> Policy:
     form = FORM[network]
     envs = DummyVectorEnv([lambda: ActingRobotEnv(**options(form)) for _ in range(8)])
     envs.seed([8 * seed + number for number in range(8)])
-    view = ActingRobotEnv(**options(form))
+    view: Any = ActingRobotEnv(**options(form))
     net = build(network, spaces.flatdim(view.observation_space["observation"]), TASKS, seed)
     policy = DiscreteActorPolicy(
         actor=Actor(net),
