@@ -26,6 +26,7 @@ from mrta_zoo.mission import Mission
 from mrta_zoo.mrta_v0 import raw_env
 from mrta_zoo.render import RENDER_MODES
 from mrta_zoo.settings import Illegal, one_of
+from mrta_zoo.world import next_legal
 
 Step = tuple[Any, float, bool, bool, dict[str, Any]]
 
@@ -41,7 +42,8 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
     ended.
 
     Args:
-        on_illegal: what an action does that the mask forbids: ``"terminate"`` the episode, or ``"raise"`` an error.
+        on_illegal: what an action does that the mask forbids: ``"terminate"`` the episode, ``"raise"`` an error, or
+            ``"replace"``: stand for the next that the mask allows, for learners that know no masks.
         illegal_reward: reward of a step that so ends the episode.
         **options: see `mrta_zoo.settings.Settings`; without ``staggered``, for there is one agent to terminate.
 
@@ -97,9 +99,11 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
                 outside = isinstance(action, bool) or not self.action_space.contains(action)
                 if outside or self.on_illegal == "raise":
                     raise
-                self._over = True
-                observation, info = self._seen()
-                return observation, self.illegal_reward, True, False, info
+                if self.on_illegal == "terminate":
+                    self._over = True
+                    observation, info = self._seen()
+                    return observation, self.illegal_reward, True, False, info
+                self._aec.step(next_legal(self.action_masks(), int(action)))
         self._over = self.mission.done
         observation, info = self._seen()
         rewards = self._aec.rewards.values()

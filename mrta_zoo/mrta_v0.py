@@ -96,8 +96,9 @@ from its generator. The same seed gives the same episode; without a seed the ran
 
 Parallel form
 -------------
-`parallel_env(…)` takes the same arguments and ``on_illegal="terminate"`` or ``"raise"``; see `mrta_zoo.parallel`. It is
-an implementation of its own because PettingZoo's conversion asks for agents that take cyclic turns.
+`parallel_env(…)` takes the same arguments and ``on_illegal="terminate"``, ``"raise"`` or ``"replace"``; see
+`mrta_zoo.parallel`. It is an implementation of its own because PettingZoo's conversion asks for agents that take cyclic
+turns.
 
 Other forms
 -----------

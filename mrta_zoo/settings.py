@@ -19,7 +19,7 @@ from mrta_zoo.scenario import Scenario
 Generator = Callable[[np.random.Generator], Scenario]
 ObservationForm = Literal["dict", "masked", "flat"]
 RenderMode = Literal["ansi", "human", "rgb_array"]
-Illegal = Literal["terminate", "raise"]
+Illegal = Literal["terminate", "raise", "replace"]
 
 DEFAULT_MAX_TASKS, DEFAULT_MAX_ROBOTS = 100, 7
 

@@ -193,6 +193,11 @@ class World:
         return rewards
 
 
+def next_legal(mask: npt.NDArray[Any], action: int) -> int:
+    """The first action that the mask allows, from `action` on and then from 0."""
+    return int(np.roll(mask, -action).argmax() + action) % len(mask)
+
+
 def _scenario_option(options: dict[str, Any] | None) -> Scenario | None:
     """The scenario in the options of `reset`, if there is one."""
     if options is None:

@@ -80,6 +80,18 @@ def test_or_is_an_error() -> None:
     view.step(int(view.action_masks().argmax()))  # nothing was changed
 
 
+def test_or_stands_for_the_next_legal_one() -> None:
+    view = ActingRobotEnv(scenario=small_scenario(0), on_illegal="replace")
+    view.reset()
+    over = False
+    while not over:
+        legal, robot = np.flatnonzero(view.action_masks()).tolist(), view.robot
+        illegal = next((task for task in range(7, -1, -1) if task not in legal), legal[0])
+        expected = next((task for task in legal if task >= illegal), legal[0])
+        _, _, over, _, _ = view.step(illegal)
+        assert view.mission.routes[robot][-1] == expected
+
+
 @pytest.mark.parametrize("action", [8, -1, 1.5, None, True])
 def test_actions_outside_the_space(action: object) -> None:
     view = ActingRobotEnv(scenario=small_scenario(0))

@@ -14,15 +14,15 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 import torch
-from gymnasium import spaces
+from torch.utils.data import default_collate
 
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.heuristics import RandomPolicy
 from mrta_zoo.policies.neural import load_policy
 from mrta_zoo.policies.weights import save_policy
 from mrta_zoo.train.integrations import rllib_ppo, sb3_ppo, supersuit_ppo, tianshou_ppo, torchrl_ppo
-from mrta_zoo.train.integrations.networks import build
-from mrta_zoo.train.integrations.problem import Planner, completions, in_aec_loop
+from mrta_zoo.train.integrations.networks import FORM, Kind, build
+from mrta_zoo.train.integrations.problem import Planner, completions, in_aec_loop, options
 
 pytestmark = [pytest.mark.integrations, pytest.mark.filterwarnings("ignore")]  # theirs, not ours to mend
 
@@ -113,16 +113,26 @@ def assert_capam_learns(train: Callable[..., Any], path: Path) -> None:
 def test_rllib_with_other_numbers_of_robots() -> None:
     """Of the robots that there may be the first episode need not have all."""
     generator = UniformGenerator(tasks=(5, 8), robots=(1, 4), deadline=(100, 300))
-    options = {"generator": generator, "reward": "completion", "observation": "masked"}
-    algorithm = rllib_ppo.configure(options, seed=0).build_algo()
+    env = {"generator": generator, "reward": "completion", "observation": "masked"}
+    algorithm = rllib_ppo.configure(env, seed=0).build_algo()
     assert algorithm.train()["env_runners"]["num_env_steps_sampled"] >= 1000
     algorithm.stop()
 
 
-def test_the_observation_of_rllibs_module_is_the_environments() -> None:
-    env = rllib_ppo.RllibEnv({"observation": "dict"})
-    assert list(env.observation_spaces) == [f"robot_{robot}" for robot in range(7)]
-    assert isinstance(env.observation_spaces["robot_6"]["observation"], spaces.Dict)
+@pytest.mark.parametrize("kind", ["mlp", "capam"])
+def test_rllib_module_is_masked(kind: Kind) -> None:
+    env = rllib_ppo.RllibEnv(options(FORM[kind]))
+    assert list(env.observation_spaces) == ["robot_0", "robot_1"]
+    module = rllib_ppo.MaskedModule(
+        observation_space=env.observation_spaces["robot_0"],
+        action_space=env.action_spaces["robot_0"],
+        model_config={"kind": kind, "seed": 0},
+    )
+    observation, _ = env.reset(seed=0)
+    batch = {"obs": default_collate([observation["robot_0"], observation["robot_0"]])}
+    probabilities = module.forward_train(batch)["action_dist_inputs"].softmax(-1)
+    assert torch.equal(probabilities > 0, batch["obs"]["action_mask"] > 0)
+    assert module.compute_values(batch).shape == (2,)
 
 
 def test_command_line() -> None:

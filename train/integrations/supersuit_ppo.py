@@ -1,7 +1,7 @@
 """SuperSuit: its wrappers and its vector environment, with SB3's PPO, which knows no masks.
 
-The parallel form, flat; SuperSuit makes each robot a row of a vector environment. PPO has to learn what is legal, for
-an illegal action ends the episode; when it has been trained, it takes the likeliest action that the mask allows.
+The parallel form, flat; SuperSuit makes each robot a row of a vector environment. An illegal action is replaced by the
+next legal one, for PPO would need long to learn what is legal.
 Wrappers, as in `wrapped`, each make it slower: SuperSuit turns the environment into the AEC form and back for them.
 
 Run it with ``python -m mrta_zoo.train.integrations.supersuit_ppo --seed 0``.
@@ -13,8 +13,6 @@ from typing import Any
 
 import numpy as np
 import supersuit
-import torch
-from pettingzoo.utils.env_logger import EnvLogger
 from stable_baselines3 import PPO
 from stable_baselines3.common.utils import set_random_seed
 
@@ -26,7 +24,7 @@ from mrta_zoo.train.integrations.problem import options, show
 
 def make_env() -> Any:
     """The parallel environment."""
-    return mrta_v0.parallel_env(illegal_reward=-0.1, **options("flat"))
+    return mrta_v0.parallel_env(on_illegal="replace", **options("flat"))
 
 
 def wrapped(steps: int = 2) -> Any:
@@ -41,17 +39,13 @@ class Planner:
     def __init__(self, model: PPO) -> None:
         self.model = model
 
-    @torch.no_grad()
     def plan(self, scenario: Scenario) -> Plan:
-        """The plan that the likeliest legal actions make."""
+        """The plan that the likeliest actions make."""
         env = make_env()
-        observations, infos = env.reset(options={"scenario": scenario})
+        observations, _ = env.reset(options={"scenario": scenario})
         while env.agents:
-            seen = torch.as_tensor(np.stack([observations[agent] for agent in env.agents]))
-            legal = torch.as_tensor(np.stack([infos[agent]["action_mask"] for agent in env.agents])).bool()
-            logits = self.model.policy.get_distribution(seen).distribution.logits
-            actions = logits.masked_fill(~legal, -torch.inf).argmax(-1).tolist()
-            observations, _, _, _, infos = env.step(dict(zip(env.agents, actions, strict=True)))
+            actions, _ = self.model.predict(np.stack([observations[agent] for agent in env.agents]), deterministic=True)
+            observations, *_ = env.step(dict(zip(env.agents, actions.tolist(), strict=True)))
         return Plan(tuple(map(tuple, env.unwrapped.mission.routes)), scenario.name, "supersuit")
 
 
@@ -63,14 +57,13 @@ def vectorised(env: Any, count: int) -> Any:
 
 def learn(envs: Any, steps: int, seed: int = 0) -> PPO:
     """SB3's PPO on a vector environment."""
-    EnvLogger.suppress_output()  # a line for each illegal action
     set_random_seed(seed)  # by `PPO(seed=…)` SB3 would seed the environments, in a way that SuperSuit's don't know
     envs.venv.reset(seed=seed)
     model = PPO("MlpPolicy", envs, n_steps=64, batch_size=256, n_epochs=8, gamma=1.0, learning_rate=1e-3, ent_coef=0.01)
     return model.learn(steps)
 
 
-def train(seed: int = 0, steps: int = 60_000) -> Planner:
+def train(seed: int = 0, steps: int = 30_000) -> Planner:
     """Train on the small problem.
 
     Args:
