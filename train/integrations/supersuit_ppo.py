@@ -63,7 +63,7 @@ def learn(envs: Any, steps: int, seed: int = 0) -> PPO:
     return model.learn(steps)
 
 
-def train(seed: int = 0, steps: int = 30_000) -> Planner:
+def train(seed: int = 0, steps: int = 20_000) -> Planner:
     """Train on the small problem.
 
     Args:
