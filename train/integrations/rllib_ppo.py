@@ -86,7 +86,7 @@ def configure(
 
 def train(
     seed: int = 0,
-    iterations: int = 15,
+    iterations: int = 10,
     network: Kind = "mlp",
     sharing: Literal["shared", "independent"] = "shared",
 ) -> Policy:

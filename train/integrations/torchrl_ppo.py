@@ -39,7 +39,7 @@ def make_env(seed: int, **changes: Any) -> PettingZooWrapper:
         return PettingZooWrapper(env, use_mask=True, group_map=MarlGroupMapType.ALL_IN_ONE_GROUP, seed=seed)
 
 
-def train(seed: int = 0, iterations: int = 8, network: Kind = "mlp") -> Policy:
+def train(seed: int = 0, iterations: int = 5, network: Kind = "mlp") -> Policy:
     """Train on the small problem.
 
     Args:
