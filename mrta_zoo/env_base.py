@@ -9,7 +9,7 @@ from gymnasium import spaces
 
 from mrta_zoo.mission import Mission
 from mrta_zoo.observation import FloatTable
-from mrta_zoo.render import render
+from mrta_zoo.render import Viewer
 from mrta_zoo.settings import Settings
 from mrta_zoo.world import World
 
@@ -27,6 +27,7 @@ class EnvBase:
         self.settings = settings
         self._world = World(settings, num_actions)
         self.render_mode = settings.render_mode
+        self._viewer = Viewer(settings.render_mode)
         self.possible_agents = list(self._world.names)
         self.action_spaces = dict(self._world.action_spaces)
         self.observation_spaces = dict.fromkeys(self.possible_agents, self._world.observation_space)
@@ -52,8 +53,9 @@ class EnvBase:
         return self._world.state()
 
     def render(self) -> np.ndarray | str | None:
-        """The mission as text or picture, by `render_mode`."""
-        return render(self.mission, self.render_mode)
+        """The mission as text or picture, or shown in a window, by `render_mode`; see `render.Viewer.render`."""
+        return self._viewer.render(self.mission)
 
     def close(self) -> None:
-        """Nothing to close."""
+        """Close the window of render mode ``"human"``, if it is open."""
+        self._viewer.close()
