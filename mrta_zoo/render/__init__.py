@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mrta_zoo.render.ansi import describe
+from mrta_zoo.render.ansi import describe, headline
 from mrta_zoo.render.viewer import RENDER_FPS, RENDER_MODES, Viewer
 
-__all__ = ["RENDER_FPS", "RENDER_MODES", "Viewer", "describe"]
+__all__ = ["RENDER_FPS", "RENDER_MODES", "Viewer", "describe", "headline"]

@@ -6,8 +6,8 @@ Needs pygame (``mrta_zoo[render]``), of which it uses no display, so that it dra
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from functools import lru_cache
+from io import BytesIO
 from math import hypot
 
 import numpy as np
@@ -87,13 +87,11 @@ def as_array(picture: pygame.Surface) -> npt.NDArray[np.uint8]:
     return np.frombuffer(pygame.image.tobytes(picture, "RGB"), np.uint8).reshape(height, width, 3).copy()
 
 
-def mixed(colours: Sequence[str], share: float) -> str:
-    """The colour that lies at `share`, 0 to 1, of the way from the first to the last."""
-    place = min(max(share, 0.0), 1.0) * (len(colours) - 1)
-    index = min(int(place), len(colours) - 2)
-    below, above = (pygame.Color(colour) for colour in colours[index : index + 2])
-    mix = below.lerp(above, place - index)
-    return f"#{mix.r:02x}{mix.g:02x}{mix.b:02x}"
+def as_png(picture: pygame.Surface) -> bytes:
+    """The contents of a PNG file."""
+    file = BytesIO()
+    pygame.image.save(picture, file, ".png")
+    return file.getvalue()
 
 
 @lru_cache(maxsize=1024)

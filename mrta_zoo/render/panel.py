@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from mrta_zoo.mission import Mission
-from mrta_zoo.render.canvas import Canvas, mixed
-from mrta_zoo.render.style import FAINT, INK, MISSED, URGENCY, robot_colour
+from mrta_zoo.palette import FAINT, INK, MISSED, URGENCY, blend, robot_colour
+from mrta_zoo.render.canvas import Canvas
 from mrta_zoo.rules import Status
 
 _TOP, _ROW = 60.0, 22.0
@@ -60,11 +60,11 @@ def _draw_legend(canvas: Canvas, mission: Mission, left: float) -> None:
     mark, text = left + 11, left + 29
     canvas.text(f"{tasks} task{'s' * (tasks != 1)}", (left, _TOP), 17, FAINT)
     rows = [_TOP + (row + 1) * _ROW for row in range(_LEGEND_ROWS)]
-    canvas.disc((mark, rows[0]), 6.0, mixed(URGENCY, 0.4), FAINT, 1.2)
+    canvas.disc((mark, rows[0]), 6.0, blend(URGENCY, 0.4), FAINT, 1.2)
     canvas.text(f"{counts[Status.ACTIVE]} active, by time left to their deadlines:", (text, rows[0]), 17, INK)
     steps = 60
     for step in range(steps):
-        canvas.rectangle((text + 22 + 2.5 * step, rows[1] - 5), (2.5, 10), mixed(URGENCY, step / (steps - 1)))
+        canvas.rectangle((text + 22 + 2.5 * step, rows[1] - 5), (2.5, 10), blend(URGENCY, step / (steps - 1)))
     canvas.text("0", (text + 15, rows[1]), 16, FAINT, align=1.0)
     canvas.text(f"{horizon:.4g}", (text + 29 + 2.5 * steps, rows[1]), 16, FAINT)
     canvas.disc((mark, rows[2]), 7.5, "#ffffff", INK, 2.6)

@@ -12,9 +12,9 @@ import numpy as np
 import pygame
 
 from mrta_zoo.mission import Mission
-from mrta_zoo.render.canvas import Canvas, Point, mixed
+from mrta_zoo.palette import FAINT, GROUND, INK, MISSED, URGENCY, blend, robot_colour
+from mrta_zoo.render.canvas import Canvas, Point
 from mrta_zoo.render.panel import draw_panel
-from mrta_zoo.render.style import FAINT, GROUND, INK, MISSED, URGENCY, robot_colour
 from mrta_zoo.render.whereabouts import whereabouts
 from mrta_zoo.rules import Status
 
@@ -96,10 +96,10 @@ def _draw_trail(canvas: Canvas, frame: _Frame, mission: Mission, robot: int, now
     trail = [start, *(stops[:-1] if under_way else stops), now]
     for leg, (begin, end) in enumerate(pairwise(trail)):
         age = min(len(trail) - 2 - leg, _RECENT_LEGS)
-        canvas.line(begin, end, mixed((colour, GROUND), 0.15 + 0.6 * age / _RECENT_LEGS), 2.2 * detail)
+        canvas.line(begin, end, blend((colour, GROUND), 0.15 + 0.6 * age / _RECENT_LEGS), 2.2 * detail)
     if under_way:
         canvas.dashes(now, stops[-1], colour, 2.2 * detail)
-    canvas.square(start, 11.0 * max(detail, 0.6), "#ffffff", mixed((colour, GROUND), 0.3), 2.0)
+    canvas.square(start, 11.0 * max(detail, 0.6), "#ffffff", blend((colour, GROUND), 0.3), 2.0)
 
 
 def _draw_tasks(canvas: Canvas, frame: _Frame, mission: Mission, detail: float) -> None:
@@ -110,7 +110,7 @@ def _draw_tasks(canvas: Canvas, frame: _Frame, mission: Mission, detail: float) 
         place = frame.pixel(tuple(scenario.task_xy[task].tolist()))
         if status == Status.ACTIVE:
             left = (float(scenario.deadline[task]) - mission.time) / horizon
-            canvas.disc(place, 6.0 * detail, mixed(URGENCY, left), FAINT, 1.2 * detail)
+            canvas.disc(place, 6.0 * detail, blend(URGENCY, left), FAINT, 1.2 * detail)
         elif status == Status.ASSIGNED:
             canvas.disc(place, 7.5 * detail, "#ffffff", robot_colour(by), 2.6 * detail)
         elif status == Status.COMPLETED:

@@ -16,9 +16,9 @@ from pettingzoo.utils.wrappers import RecordVideo
 from mrta_zoo import Scenario, mrta_v0
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.mission import Mission
-from mrta_zoo.render.canvas import as_array, mixed
+from mrta_zoo.palette import blend, robot_colour
+from mrta_zoo.render.canvas import as_array
 from mrta_zoo.render.picture import draw
-from mrta_zoo.render.style import robot_colour
 from mrta_zoo.render.window import Window
 
 SIZE = (720, 1040, 3)
@@ -69,8 +69,8 @@ def test_tasks_show_their_status(mission):
 
 
 def test_time_left_is_a_colour():
-    assert mixed(("#000000", "#ff0000", "#ffffff"), 0.25) == "#800000"
-    assert mixed(("#000000", "#ffffff"), 7.0) == "#ffffff"
+    assert blend(("#000000", "#ff0000", "#ffffff"), 0.25) == "#800000"
+    assert blend(("#000000", "#ffffff"), 7.0) == "#ffffff"
 
 
 def test_a_mission_in_progress_changes_the_picture():
