@@ -32,8 +32,9 @@ class Plan:
 
     def _repr_html_(self) -> str:
         """What a notebook shows: each robot's tasks, in order."""
-        title = (
-            "Plan" + (f" of {self.scenario}" if self.scenario else "") + (f" by {self.method}" if self.method else "")
-        )
+        of = f" of {self.scenario}" if self.scenario else ""
+        by = f" by {self.method}" if self.method else ""
         rows = [(robot, len(route), " → ".join(map(str, route)) or "-") for robot, route in enumerate(self.routes)]
-        return table(f"{title}: {sum(map(len, self.routes))} tasks taken", ("robot", "tasks", "in this order"), rows)
+        return table(
+            f"Plan{of}{by}: {sum(map(len, self.routes))} tasks taken", ("robot", "tasks", "in this order"), rows
+        )

@@ -129,9 +129,10 @@ class Scenario:
                 ("capacity", self.capacity), ("speed", self.speed),
             )
         ]  # fmt: skip
-        title = f"{self.name}: {self.num_tasks} tasks, {self.num_robots} robots, map {self.map_size[0]:g} × "
+        width, height = self.map_size
+        title = f"{self.name}: {self.num_tasks} tasks, {self.num_robots} robots, map {width:g} by {height:g}"
         picture = map_of(self.map_size, self.task_xy.tolist(), self.deadline.tolist(), self.robot_xy.tolist())
-        return table(f"{title}{self.map_size[1]:g}", ("", "least", "mean", "most"), rows) + picture
+        return table(title, ("", "least", "mean", "most"), rows) + picture
 
 
 def _frozen(values: npt.ArrayLike, attribute: str) -> FloatArray:

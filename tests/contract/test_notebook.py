@@ -36,7 +36,7 @@ def cells(html: str) -> list[list[str]]:
 
 def test_a_scenario():
     html = shown(SCENARIO)
-    assert "a &lt; b: 2 tasks, 2 robots, map 100 × 50" in html
+    assert "a &lt; b: 2 tasks, 2 robots, map 100 by 50" in html
     assert cells(html)[0] == ["deadline", "20", "30", "40"]
     # 320 pixels for 100 distance units, y downwards: task 1 is at (0, 20), 30 units below the top.
     assert '<circle cx="0.0" cy="96.0"' in html
