@@ -34,6 +34,7 @@ LAYERS = (
             "mrta_zoo.batch",
             "mrta_zoo.objective",
             "mrta_zoo.verify",
+            "mrta_zoo.trace",
             "mrta_zoo.generators",
             "mrta_zoo.io",
             "mrta_zoo.suite",
@@ -54,6 +55,7 @@ LAYERS = (
         ),
     ),
     ("policies and solvers", ("mrta_zoo.policies",)),
+    ("looking at episodes", ("mrta_zoo.debug",)),
     ("training and evaluation", ("mrta_zoo.train", "mrta_zoo.eval")),
     ("the command line", ("mrta_zoo.cli", "mrta_zoo.__main__")),
 )
