@@ -10,6 +10,7 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "torch": ("torch", "safetensors"),
     "plot": ("matplotlib",),
     "render": ("pygame",),
+    "replay": ("plotly",),
     "solvers": ("scipy", "numba"),
     "pyvrp": ("pyvrp",),
     "report": ("filelock", "scipy", "statsmodels", "pandas", "jinja2", "matplotlib"),

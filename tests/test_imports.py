@@ -49,6 +49,7 @@ LAYERS = (
             "mrta_zoo.world",
             "mrta_zoo.wrappers",
             "mrta_zoo.render",
+            "mrta_zoo.replay",
             "mrta_zoo.env_base",
             "mrta_zoo.parallel",
             "mrta_zoo.mrta_v0",
