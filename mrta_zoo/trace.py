@@ -74,7 +74,7 @@ class Trace:
         mask_rule: what robots could choose, see `rules.MaskRule`.
         method: name of the policy or solver that chose, or advised; empty if none did.
         decode: how a learned policy chose, such as "greedy"; empty if there is nothing to say.
-        seed: of the method's draws, None if it has none.
+        seed: of all draws, None if none was given.
         bound: as in `Plan`.
         bookmark: the decision to look at first, from 0 to the number of choices; None if there is none.
 
@@ -118,7 +118,7 @@ class Trace:
             PlanError: if the plan does not fit the scenario, or the rule forbids a part of it.
         """
         mission = Mission(scenario, tightest_rule(scenario, plan) if mask_rule is None else mask_rule)
-        choices = []
+        choices: list[Choice] = []
         while not mission.done:
             robot = mission.actor
             done = len(mission.routes[robot])
