@@ -38,6 +38,13 @@ def _generate(argv: list[str]) -> None:
     generate_command(argv)
 
 
+def _replay(argv: list[str]) -> None:
+    require("replay", "the page")
+    from mrta_zoo.eval.replay import replay_command
+
+    replay_command(argv)
+
+
 def _train(argv: list[str]) -> None:
     require("torch", "training")
     from mrta_zoo.train.cli import train_command
@@ -77,6 +84,7 @@ COMMANDS: dict[str, tuple[str, Command]] = {
     "solve": ("plan one mission: who does which task when", _solve),
     "eval": ("compare methods on a folder of cases, or on the built-in suite", _eval),
     "generate": ("draw random scenarios into a folder of cases", _generate),
+    "replay": ("make a page that replays an episode in a browser, or two side by side", _replay),
     "train": ("train a policy by REINFORCE", _train),
     "reproduce": ("run the experiments of the CapAM paper and write a report", _reproduce),
     "converge": ("measure plan quality against planning time, and draw it", _converge),
