@@ -7,7 +7,6 @@ import pytest
 
 from mrta_zoo import Plan, Scenario
 from mrta_zoo.generators import UniformGenerator
-from mrta_zoo.mission import Mission
 from mrta_zoo.policies.registry import make_solver
 from mrta_zoo.render.whereabouts import whereabouts
 from mrta_zoo.replay.episode import MOST_CANDIDATES, MOST_MASKED, Visit, episode_of

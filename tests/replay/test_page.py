@@ -20,7 +20,7 @@ from mrta_zoo.replay.episode import episode_of
 from mrta_zoo.replay.page import Document
 from mrta_zoo.trace import Trace
 
-SCENARIO = small_scenario(0, name="</script><b>&\"$x")
+SCENARIO = small_scenario(0, name='</script><b>&"$x')
 TRACE = Trace.of_plan(SCENARIO, make_solver("nearest").solve(SCENARIO))
 
 
@@ -57,7 +57,7 @@ def test_errors(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(ConfigError, match="there are 3 episodes to replay; expected one, or two"):
         replay_page([TRACE] * 3)
     elsewhere = small_scenario(1, name="other")
-    with pytest.raises(ConfigError, match="different scenarios.*'other'; expected two of the same"):
+    with pytest.raises(ConfigError, match=r"different scenarios.*'other'; expected two of the same"):
         replay_page([TRACE, Trace(elsewhere, ())])
     with pytest.raises(ConfigError, match="cannot be written: no such file or directory"):
         write_replay([TRACE], tmp_path / "absent" / "page.html")
