@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 from typing import Any
 
 UNITS = 520
@@ -13,14 +12,14 @@ UNITS = 520
 class OpenPage:
     """A page, and what it complained of or asked the network for."""
 
-    def __init__(self, browser: Any, file: Path) -> None:
+    def __init__(self, browser: Any, url: str) -> None:
         self.complaints: list[str] = []
         self.requests: list[str] = []
         self.tab = browser.new_page(viewport={"width": 1400, "height": 900})
         self.tab.on("console", lambda message: self.complaints.append(message.text))
         self.tab.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.tab.on("request", lambda request: self.requests.append(request.url))
-        self.tab.goto(file.as_uri())
+        self.tab.goto(url)
         self.tab.wait_for_selector("#progress .main-svg")
 
     def texts(self, selector: str) -> list[str]:

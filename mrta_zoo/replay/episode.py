@@ -124,8 +124,8 @@ def episode_of(trace: Trace) -> Episode:
         route = routes[decision.robot]
         if decision.choice.task is not None:
             visit = score.schedule[decision.robot][len(route)]
-            times = map(_short, (decision.time, visit.arrival, visit.finish))
-            route.append(Visit(visit.task, decision.index, *times, visit.completed))
+            leave, arrive, finish = map(_short, (decision.time, visit.arrival, visit.finish))
+            route.append(Visit(visit.task, decision.index, leave, arrive, finish, visit.completed))
         decisions.append(_decision(mission, decision.choice))
     return Episode(
         method=trace.method or "unnamed",

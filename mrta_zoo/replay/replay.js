@@ -133,6 +133,7 @@ function pick(index, decision) {
   moment.last = sides.map((side) => side.lastBy(moment.time));
   moment.last[index] = decision;
   moment.side = index;
+  location.replace(`#${decision + 1}/${index + 1}`); // so that the address can be passed on
   draw();
 }
 /** To the decision before or after, on the side looked at last. */
@@ -185,5 +186,8 @@ document.addEventListener("keydown", (event) => {
   const action = { " ": play, ArrowLeft: () => step(-1), ArrowRight: () => step(1) }[event.key];
   if (action) { event.preventDefault(); action(); }
 });
+const [decision, side = 1] = location.hash.slice(1).split("/").map(Number);
 const marked = episodes.findIndex((episode) => episode.decisions[episode.bookmark]);
-if (marked >= 0) pick(marked, episodes[marked].bookmark); else go(0);
+if (episodes[side - 1]?.decisions[decision - 1]) pick(side - 1, decision - 1);
+else if (marked >= 0) pick(marked, episodes[marked].bookmark);
+else go(0);

@@ -32,7 +32,7 @@ END = max(float(SCENARIO.deadline.max()), *(float(np.nanmax(trace.mission().fini
 def opened(browser: Any, tmp_path_factory: pytest.TempPathFactory) -> OpenPage:
     file = tmp_path_factory.mktemp("replay") / "pair.html"
     write_replay(TRACES, file)
-    return OpenPage(browser, file)
+    return OpenPage(browser, file.as_uri())
 
 
 @pytest.fixture
@@ -175,6 +175,14 @@ def test_keys_and_buttons_step_from_decision_to_decision(page):
     check_decision(page, 0, 1)
 
 
+def test_the_address_names_the_decision(page, browser):
+    page.tab.evaluate("pick(1, 4)")
+    assert page.tab.url.endswith("pair.html#5/2")
+    other = OpenPage(browser, page.tab.url)
+    check_decision(other, 1, 4)
+    other.tab.close()
+
+
 def test_of_decisions_at_the_same_time_those_after_are_yet_to_be_made(page):
     page.tab.locator("#strip-0 i").first.click(force=True)
     page.tab.evaluate("pick(0, 1)")  # the second robot's, also at time 0
@@ -229,7 +237,7 @@ def test_play_moves_the_time_on_and_pauses(page):
 
 def test_one_episode_without_probabilities(browser, tmp_path):
     write_replay([TRACES[1]], tmp_path / "one.html")
-    page = OpenPage(browser, tmp_path / "one.html")
+    page = OpenPage(browser, (tmp_path / "one.html").as_uri())
     assert page.tab.locator(".side").count() == 1
     assert not page.tab.locator("#side-0 th.likely").is_visible()
     assert page.tab.locator("#side-0 th.wide").first.is_visible()
@@ -240,7 +248,7 @@ def test_one_episode_without_probabilities(browser, tmp_path):
 @pytest.mark.parametrize("choices", [0, 3])
 def test_an_episode_that_breaks_off(browser, tmp_path, choices):
     write_replay([Trace(SCENARIO, TRACES[0].choices[:choices], bookmark=choices // 2)], tmp_path / "cut.html")
-    page = OpenPage(browser, tmp_path / "cut.html")
+    page = OpenPage(browser, (tmp_path / "cut.html").as_uri())
     assert page.tab.locator("#strip-0 i").count() == choices
     if choices:
         assert page.decision(0).startswith("Decision 2 of 3")  # the bookmark
@@ -255,7 +263,7 @@ def test_a_thousand_tasks(browser, tmp_path):
     scenario = TaptcGenerator(tasks=(1000, 1000), robots=(70, 70))(np.random.default_rng(0))
     trace = Trace.of_plan(scenario, make_solver("nearest").solve(scenario))
     write_replay([trace, trace], tmp_path / "many.html")
-    page = OpenPage(browser, tmp_path / "many.html")
+    page = OpenPage(browser, (tmp_path / "many.html").as_uri())
     assert page.tab.locator("#side-1 .task").count() == 1000
     page.slide(60.0)
     mission = mission_at(trace, 60.0)
@@ -272,7 +280,7 @@ def test_the_scenario_is_not_square(browser, tmp_path):
         robot_xy=[[0, 0]], capacity=[1], map_size=(200, 50),
     )  # fmt: skip
     write_replay([record(scenario, "nearest")], tmp_path / "wide.html")
-    page = OpenPage(browser, tmp_path / "wide.html")
+    page = OpenPage(browser, (tmp_path / "wide.html").as_uri())
     mark = page.tab.locator("#side-0 .task").first.get_attribute("transform")
     x, y = map(float, re.findall(r"[\d.]+", mark)[:2])
     assert (x, y) == pytest.approx((520, (50 - 10) * 2.6))  # 520 units for 200
