@@ -71,6 +71,11 @@ class NeuralPolicy:
         self._encoded_for: object = None
         self._encoding: Any = None
 
+    @property
+    def memoryless(self) -> bool:
+        """Whether what it does depends on the observation alone, and not on what it was asked before."""
+        return self.decode != "sample"
+
     def fork(self) -> NeuralPolicy:
         """A policy that goes on as this one would, with draws of its own, on the same network."""
         twin = copy.copy(self)

@@ -56,6 +56,7 @@ class Advisor(ABC):
         decode: how a learned policy chooses; empty if there is nothing to say.
         seed: of all draws, None if none was given.
         bound: as in `Plan`, if it is a plan that advises.
+        memoryless: whether its advice depends on the mission alone, so that it may be asked in any state it has left.
     """
 
     method: str = ""
@@ -63,6 +64,7 @@ class Advisor(ABC):
     decode: str = ""
     seed: int | None = None
     bound: int | None = None
+    memoryless: bool = False
 
     def begin(self) -> Any:
         """The state before the first decision."""
@@ -85,7 +87,8 @@ class PolicyAdvisor(Advisor):
     """Asks a policy of the AEC loop, with its probabilities if it has some.
 
     Args:
-        policy: is asked through copies of its own: what `fork` gives if it has such a method, else deep ones.
+        policy: is asked through copies of its own: what `fork` gives if it has such a method, else deep ones. An
+            attribute ``memoryless = True`` says that it decides by the observation alone.
         method: its name.
         mask_rule: the rule that it decides under.
         seed: which it was made with.
@@ -96,6 +99,7 @@ class PolicyAdvisor(Advisor):
     ) -> None:
         self.method, self.mask_rule, self.seed = method, mask_rule, seed
         self.decode = str(getattr(policy, "decode", ""))
+        self.memoryless = getattr(policy, "memoryless", False) is True
         self._policy = policy
         self._observers: dict[Scenario, Observer] = {}
 
@@ -146,6 +150,7 @@ class PlanAdvisor(Advisor):
         self.method, self.decode, self.seed, self.bound = plan.method, decode, seed, plan.bound
         tightest = tightest_rule(scenario, plan)  # also checks that the plan fits
         self.mask_rule = tightest if mask_rule is None else mask_rule
+        self.memoryless = policy is None or policy.memoryless
         self._routes, self._policy = plan.routes, policy
 
     def begin(self) -> Any:

@@ -34,7 +34,8 @@ def play(scenario: Scenario, advisor: Advisor, first: Sequence[Choice] = ()) -> 
     Args:
         scenario: the mission.
         advisor: is asked at every decision.
-        first: what to choose at the first decisions, whatever it advises.
+        first: what to choose at the first decisions, whatever it advises. A memoryless advisor is asked from the last
+            of them on.
 
     Raises:
         PlanError: if a robot may not choose what it should.
@@ -43,8 +44,12 @@ def play(scenario: Scenario, advisor: Advisor, first: Sequence[Choice] = ()) -> 
     state = advisor.begin()
     choices: list[Choice] = []
     while not mission.done:
-        advice, state = advisor.advise(mission, state)
-        choice = advice if len(choices) >= len(first) else overrule(advice, first[len(choices)].task)
+        if advisor.memoryless and len(choices) + 1 < len(first):
+            choice = first[len(choices)]
+        else:
+            choice, state = advisor.advise(mission, state)
+            if len(choices) < len(first):
+                choice = overrule(choice, first[len(choices)].task)
         make(mission, choice, len(choices))
         choices.append(choice)
     return Trace(

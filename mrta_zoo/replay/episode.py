@@ -8,6 +8,7 @@ from __future__ import annotations
 import msgspec
 import numpy as np
 
+from mrta_zoo.debug.outlook import outlook, ranked
 from mrta_zoo.mission import Mission
 from mrta_zoo.rules import MaskReason, Status
 from mrta_zoo.scenario import Scenario
@@ -17,7 +18,7 @@ from mrta_zoo.verify import verify
 MOST_CANDIDATES, MOST_MASKED = 10, 4
 """Tasks listed at each decision: the best of those that may be chosen, and the nearest of those that may not."""
 
-_CHOOSABLE, _TAKEN = int(MaskReason.CHOOSABLE), int(MaskReason.TAKEN)
+_OVER = (Status.COMPLETED, Status.MISSED)
 
 
 class Visit(msgspec.Struct, frozen=True, array_like=True):
@@ -32,14 +33,14 @@ class Visit(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Candidate(msgspec.Struct, frozen=True, array_like=True):
-    """A task at a decision: how far it is, when the acting robot would finish it, and why it may not have it.
+    """A task at a decision, as the acting robot has it before it; see `debug.outlook.Prospect`.
 
     Attributes:
         task: the task.
         distance: from the robot.
         finish: when it would be done.
         reason: a `rules.MaskReason`.
-        taken_by: the robot that has it, or -1.
+        note: who has it or else could do it, or why it may not be chosen.
         probability: the policy's; None if it has none.
     """
 
@@ -47,7 +48,7 @@ class Candidate(msgspec.Struct, frozen=True, array_like=True):
     distance: float
     finish: float
     reason: int
-    taken_by: int
+    note: str
     probability: float | None
 
 
@@ -140,34 +141,28 @@ def episode_of(trace: Trace) -> Episode:
 
 
 def _decision(mission: Mission, choice: Choice) -> Decision:
-    robot, scenario = mission.actor, mission.scenario
-    reasons = mission.reasons(robot)
-    finish = mission.finish_if[robot]
-    distance = np.hypot(*(scenario.task_xy - mission.position[robot]).T)
-    probability = np.zeros(scenario.num_tasks)
-    for task, value in (choice.probabilities or {}).items():
-        probability[task] = value
-    open_to_it = np.flatnonzero(reasons == _CHOOSABLE)
-    listed = open_to_it[np.lexsort((finish[open_to_it], -probability[open_to_it]))][:MOST_CANDIDATES].tolist()
-    listed += [task for task in (choice.task, choice.advice) if task is not None and task not in listed]
-    barred = np.flatnonzero((reasons != _CHOOSABLE) & ((reasons != _TAKEN) | (mission.status == Status.ASSIGNED)))
-    listed += barred[np.argsort(distance[barred], kind="stable")][:MOST_MASKED].tolist()
+    prospects = ranked(outlook(mission, mission.actor, choice.probabilities))
+    open_to_it = [each for each in prospects if each.reason == MaskReason.CHOOSABLE]
+    barred = [each for each in prospects if each.reason != MaskReason.CHOOSABLE and each.status not in _OVER]
+    listed = open_to_it[:MOST_CANDIDATES]
+    listed += [each for each in open_to_it[MOST_CANDIDATES:] if each.task in (choice.task, choice.advice)]
+    listed += sorted(barred, key=lambda each: each.distance)[:MOST_MASKED]
     return Decision(
         time=_short(mission.time),
-        robot=robot,
+        robot=mission.actor,
         task=choice.task,
         advice=choice.advice,
-        reasons=np.bincount(reasons, minlength=4)[:4].tolist(),
+        reasons=[sum(each.reason == reason for each in prospects) for reason in list(MaskReason)[:4]],
         candidates=[
             Candidate(
-                task,
-                _short(distance[task]),
-                _short(finish[task]),
-                int(reasons[task]),
-                int(mission.taken_by[task]),
-                None if choice.probabilities is None else round(float(probability[task]), 4),
+                each.task,
+                _short(each.distance),
+                _short(each.finish),
+                int(each.reason),
+                str(each),
+                None if each.probability is None else round(each.probability, 4),
             )
-            for task in listed
+            for each in listed
         ],
     )
 

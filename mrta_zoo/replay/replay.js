@@ -97,10 +97,9 @@ class Side {
     );
   }
 
-  row([task, distance, finish, reason, takenBy, probability], decision) {
+  row([task, distance, finish, reason, note, probability], decision) {
     const due = place.tasks[task][2], chosen = task === decision.task;
-    const why = ["", `taken by robot ${takenBy}`, REASONS[2], `too late by ${number(finish - due)}`][reason];
-    const notes = [chosen && "chosen", task === decision.advice && "the policy's choice", why].filter(Boolean);
+    const notes = [chosen && "chosen", task === decision.advice && "the policy's choice", note].filter(Boolean);
     const row = element("tr", "", { class: chosen ? "chosen" : reason ? "barred" : "", "data-task": task });
     const likely = element("td", "", { class: "words likely" });
     if (probability !== null && !reason) {
@@ -109,7 +108,7 @@ class Side {
       likely.append(element("span", `${(100 * probability).toFixed(1)} %`), bar);
     }
     const cells = [[task, ""], null, [number(distance), "wide"], [number(finish), ""], [number(due), "wide"],
-      [number(due - finish), ""], [notes.join(", "), "words"]];
+      [number(due - finish), ""], [notes.join("; "), "words note"]];
     row.append(...cells.map((cell) => cell === null ? likely : element("td", cell[0], { class: cell[1] })));
     row.addEventListener("mouseenter", () => look(this.index, task));
     row.addEventListener("mouseleave", () => look(this.index, null));

@@ -204,7 +204,7 @@ def test_the_table_tells_why_a_task_may_not_be_chosen(page):
         f"{counts[0]} to choose from, {counts[1]} taken, {counts[2]} deadline passed, {counts[3]} too late"
     ]
     reasons = " ".join(page.texts("#side-0 tr.barred"))
-    assert re.search(r"taken by robot \d|too late by \d", reasons)
+    assert re.search(r"robot \d on it until|too late by \d", reasons)
 
 
 def test_pointing_at_a_row_rings_its_task(page):
