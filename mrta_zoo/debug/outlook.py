@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -73,13 +73,19 @@ class Prospect:
         return late + f"robot {self.rival} could by {self.rival_finish:.1f}"
 
 
-def outlook(mission: Mission, robot: int, probabilities: Mapping[int, float] | None = None) -> list[Prospect]:
+def outlook(
+    mission: Mission,
+    robot: int,
+    probabilities: Mapping[int, float] | None = None,
+    tasks: Sequence[int] | None = None,
+) -> list[Prospect]:
     """Every task as `robot` has it before it when it is next free, in order of index.
 
     Args:
         mission: as it stands.
         robot: the robot.
         probabilities: its policy's, by task.
+        tasks: only these, in this order.
 
     Raises:
         ConfigError: if there is no such robot.
@@ -87,20 +93,21 @@ def outlook(mission: Mission, robot: int, probabilities: Mapping[int, float] | N
     scenario = mission.scenario
     if not 0 <= robot < scenario.num_robots:
         raise ConfigError(f"there is no robot {robot}; expected a number from 0 to {scenario.num_robots - 1}")
-    dx, dy = (scenario.task_xy - mission.position[robot]).T
+    which = np.arange(scenario.num_tasks) if tasks is None else np.array(tasks, dtype=np.intp)
+    dx, dy = (scenario.task_xy[which] - mission.position[robot]).T
     travel = travel_time(dx, dy, scenario.speed[robot], np.sqrt)
-    finish = mission.finish_if[robot]
+    finish, deadline = mission.finish_if[robot, which], scenario.deadline[which]
     # Of the others, who could be done first: those that are retired could not.
-    others = mission.finish_if.copy()
+    others = mission.finish_if[:, which]
     others[np.array(mission.retired)] = np.inf
     others[robot] = np.inf
-    others[others > scenario.deadline] = np.inf
+    others[others > deadline] = np.inf
     rival, soonest = others.argmin(axis=0), others.min(axis=0)
     given = probabilities or {}
     columns = zip(
-        np.hypot(dx, dy).tolist(), travel.tolist(), finish.tolist(), (scenario.deadline - finish).tolist(),
-        scenario.deadline.tolist(), mission.reasons(robot).tolist(), mission.status.tolist(),
-        mission.taken_by.tolist(), mission.finish.tolist(), rival.tolist(), soonest.tolist(), strict=True,
+        which.tolist(), np.hypot(dx, dy).tolist(), travel.tolist(), finish.tolist(), (deadline - finish).tolist(),
+        deadline.tolist(), mission.reasons(robot)[which].tolist(), mission.status[which].tolist(),
+        mission.taken_by[which].tolist(), mission.finish[which].tolist(), rival.tolist(), soonest.tolist(), strict=True,
     )  # fmt: skip
     return [
         Prospect(
@@ -109,7 +116,7 @@ def outlook(mission: Mission, robot: int, probabilities: Mapping[int, float] | N
             travel=time,
             finish=end,
             slack=slack,
-            deadline=deadline,
+            deadline=due,
             reason=_REASONS[reason],
             status=_STATUSES[status],
             taken_by=taken_by if taken_by >= 0 else None,
@@ -118,9 +125,7 @@ def outlook(mission: Mission, robot: int, probabilities: Mapping[int, float] | N
             rival_finish=first if taken_by < 0 and first < np.inf else None,
             probability=None if probabilities is None else given.get(task, 0.0),
         )
-        for task, (distance, time, end, slack, deadline, reason, status, taken_by, done, who, first) in enumerate(
-            columns
-        )
+        for task, distance, time, end, slack, due, reason, status, taken_by, done, who, first in columns
     ]
 
 

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import msgspec
 import numpy as np
+import numpy.typing as npt
 
-from mrta_zoo.debug.outlook import outlook, ranked
+from mrta_zoo.debug.outlook import outlook
 from mrta_zoo.mission import Mission
 from mrta_zoo.rules import MaskReason, Status
 from mrta_zoo.scenario import Scenario
@@ -17,8 +18,6 @@ from mrta_zoo.verify import verify
 
 MOST_CANDIDATES, MOST_MASKED = 10, 4
 """Tasks listed at each decision: the best of those that may be chosen, and the nearest of those that may not."""
-
-_OVER = (Status.COMPLETED, Status.MISSED)
 
 
 class Visit(msgspec.Struct, frozen=True, array_like=True):
@@ -141,18 +140,13 @@ def episode_of(trace: Trace) -> Episode:
 
 
 def _decision(mission: Mission, choice: Choice) -> Decision:
-    prospects = ranked(outlook(mission, mission.actor, choice.probabilities))
-    open_to_it = [each for each in prospects if each.reason == MaskReason.CHOOSABLE]
-    barred = [each for each in prospects if each.reason != MaskReason.CHOOSABLE and each.status not in _OVER]
-    listed = open_to_it[:MOST_CANDIDATES]
-    listed += [each for each in open_to_it[MOST_CANDIDATES:] if each.task in (choice.task, choice.advice)]
-    listed += sorted(barred, key=lambda each: each.distance)[:MOST_MASKED]
+    reasons = mission.reasons(mission.actor)
     return Decision(
         time=_short(mission.time),
         robot=mission.actor,
         task=choice.task,
         advice=choice.advice,
-        reasons=[sum(each.reason == reason for each in prospects) for reason in list(MaskReason)[:4]],
+        reasons=np.bincount(reasons, minlength=4)[:4].tolist(),
         candidates=[
             Candidate(
                 each.task,
@@ -162,9 +156,26 @@ def _decision(mission: Mission, choice: Choice) -> Decision:
                 str(each),
                 None if each.probability is None else round(each.probability, 4),
             )
-            for each in listed
+            for each in outlook(mission, mission.actor, choice.probabilities, _listed(mission, choice, reasons))
         ],
     )
+
+
+def _listed(mission: Mission, choice: Choice, reasons: npt.NDArray[np.int8]) -> list[int]:
+    """The tasks to list, in order."""
+    finish = mission.finish_if[mission.actor]
+    probability = np.zeros(len(finish))
+    for task, value in (choice.probabilities or {}).items():
+        probability[task] = value
+    open_to_it = np.flatnonzero(reasons == MaskReason.CHOOSABLE)
+    listed: list[int] = open_to_it[np.lexsort((finish[open_to_it], -probability[open_to_it]))][
+        :MOST_CANDIDATES
+    ].tolist()
+    listed += {task for task in (choice.task, choice.advice) if task is not None and task not in listed}
+    barred = np.flatnonzero((reasons != MaskReason.CHOOSABLE) & (mission.status < Status.COMPLETED))
+    distance = np.hypot(*(mission.scenario.task_xy[barred] - mission.position[mission.actor]).T)
+    listed += barred[np.argsort(distance, kind="stable")][:MOST_MASKED].tolist()
+    return listed
 
 
 def _short(value: float) -> float:

@@ -53,9 +53,8 @@ def test_candidates() -> None:
     # Robot 1 could do task 2 from 0 to 20 and nothing else in time.
     assert (second.candidates[0].task, second.candidates[0].note) == (2, "nobody else in time")
     assert first.candidates[-1].note == "too late by 50.0"  # robot 0 is at task 3 at 100, which is due at 50
-    assert [(each.task, each.note) for each in second.candidates if each.reason == 1] == [
-        (0, "robot 0 on it until 13.0")
-    ]
+    taken = [(each.task, each.note) for each in second.candidates if each.reason == MaskReason.TAKEN]
+    assert taken == [(0, "robot 0 on it until 13.0")]
 
 
 def test_the_likeliest_are_listed_and_always_the_one_taken() -> None:
