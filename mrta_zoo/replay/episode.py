@@ -168,9 +168,8 @@ def _listed(mission: Mission, choice: Choice, reasons: npt.NDArray[np.int8]) -> 
     for task, value in (choice.probabilities or {}).items():
         probability[task] = value
     open_to_it = np.flatnonzero(reasons == MaskReason.CHOOSABLE)
-    listed: list[int] = open_to_it[np.lexsort((finish[open_to_it], -probability[open_to_it]))][
-        :MOST_CANDIDATES
-    ].tolist()
+    order = np.lexsort((finish[open_to_it], -probability[open_to_it]))
+    listed: list[int] = open_to_it[order][:MOST_CANDIDATES].tolist()
     listed += {task for task in (choice.task, choice.advice) if task is not None and task not in listed}
     barred = np.flatnonzero((reasons != MaskReason.CHOOSABLE) & (mission.status < Status.COMPLETED))
     distance = np.hypot(*(mission.scenario.task_xy[barred] - mission.position[mission.actor]).T)

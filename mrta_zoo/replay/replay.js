@@ -99,7 +99,7 @@ class Side {
 
   row([task, distance, finish, reason, note, probability], decision) {
     const due = place.tasks[task][2], chosen = task === decision.task;
-    const notes = [chosen && "chosen", task === decision.advice && "the policy's choice", note].filter(Boolean);
+    const notes = [task === decision.advice && "the policy's choice", note].filter(Boolean).join("; ");
     const row = element("tr", "", { class: chosen ? "chosen" : reason ? "barred" : "", "data-task": task });
     const likely = element("td", "", { class: "words likely" });
     if (probability !== null && !reason) {
@@ -108,8 +108,9 @@ class Side {
       likely.append(element("span", `${(100 * probability).toFixed(1)} %`), bar);
     }
     const cells = [[task, ""], null, [number(distance), "wide"], [number(finish), ""], [number(due), "wide"],
-      [number(due - finish), ""], [notes.join("; "), "words note"]];
+      [number(due - finish), ""], [notes, "words note"]];
     row.append(...cells.map((cell) => cell === null ? likely : element("td", cell[0], { class: cell[1] })));
+    row.title = notes; // in case it is cut off
     row.addEventListener("mouseenter", () => look(this.index, task));
     row.addEventListener("mouseleave", () => look(this.index, null));
     return row;
