@@ -71,12 +71,10 @@ class Session:
 
     def take(self, task: str) -> str:
         number = _number(task, "task")
-        self.unsaved += 1
-        return self._chosen(lambda: self.stepper.take(number))
+        return self._chosen(lambda: self.stepper.take(number), own=True)
 
     def stay(self, _: str) -> str:
-        self.unsaved += 1
-        return self._chosen(self.stepper.stay)
+        return self._chosen(self.stepper.stay, own=True)
 
     def back(self, decisions: str) -> str:
         self.stepper.back(_number(decisions or "1", "decisions"))
@@ -160,9 +158,10 @@ class Session:
             )
         return f"decision {stepper.position}: robot {stepper.robot} chooses at {stepper.mission.time:.1f}"
 
-    def _chosen(self, choose: Callable[[], Choice]) -> str:
+    def _chosen(self, choose: Callable[[], Choice], own: bool = False) -> str:
         robot, index = self.stepper.robot, self.stepper.position
         choice = choose()
+        self.unsaved += own
         if choice.task is None:
             what = "stays for good"
         else:

@@ -40,7 +40,7 @@ class Stepper:
     Attributes:
         scenario: the scenario.
         mask_rule: what robots may choose.
-        mission: as it stands before this decision. Not to be changed: it is replaced at every move.
+        mission: as it stands before this decision. Neither to be changed nor kept: forward, the same one goes on.
         position: how many decisions have been made so far.
 
     Raises:
