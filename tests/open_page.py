@@ -16,6 +16,7 @@ class OpenPage:
         self.complaints: list[str] = []
         self.requests: list[str] = []
         self.tab = browser.new_page(viewport={"width": 1400, "height": 900})
+        self.tab.set_default_timeout(120_000)  # milliseconds; pages are large, and machines may be busy
         self.tab.on("console", lambda message: self.complaints.append(message.text))
         self.tab.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.tab.on("request", lambda request: self.requests.append(request.url))

@@ -103,9 +103,8 @@ class Side {
     const row = element("tr", "", { class: chosen ? "chosen" : reason ? "barred" : "", "data-task": task });
     const likely = element("td", "", { class: "words likely" });
     if (probability !== null && !reason) {
-      const bar = element("span", "", { class: "bar" });
-      bar.append(element("i", "", { style: `width: ${100 * probability}%` }));
-      likely.append(element("span", `${(100 * probability).toFixed(1)} %`), bar);
+      likely.textContent = `${(100 * probability).toFixed(1)} %`;
+      likely.style.setProperty("--share", `${100 * probability}%`);
     }
     const cells = [[task, ""], null, [number(distance), "wide"], [number(finish), ""], [number(due), "wide"],
       [number(due - finish), ""], [notes, "words note"]];
