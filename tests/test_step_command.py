@@ -73,8 +73,18 @@ def test_a_plan_or_a_trace_may_advise(mission: str, tmp_path: Path, capsys: Capt
         arguments = ["step", mission, "--policy", str(tmp_path / name), "--script", script(tmp_path, "end\nlog")]
         assert main(arguments) == 0
         assert "the mission is over: completed 2 of 12" in capsys.readouterr().out
-    assert main(["step", mission, "--policy", "none", "--script", script(tmp_path, "5\nlog")]) == 0
-    assert "robot 0 takes task 5" in capsys.readouterr().out
+    assert main(["step", mission, "--policy", "none", "--script", script(tmp_path, "3\nlog")]) == 0
+    assert "robot 0 takes task 3" in capsys.readouterr().out
+
+
+def test_a_session_keeps_its_seed(mission: str, tmp_path: Path, capsys: Captured) -> None:
+    session = str(tmp_path / "session.json")
+    arguments = ["--session", session, "--script"]
+    half = script(tmp_path, "f 3")
+    assert main(["step", mission, "--policy", "random", "--seed", "5", *arguments, half]) == 0
+    assert main(["step", *arguments, script(tmp_path, "end")]) == 0
+    assert read_trace(session).choices == record(SCENARIO, "random", seed=5).choices
+    capsys.readouterr()
 
 
 def test_what_cannot_be_stepped(mission: str, tmp_path: Path, capsys: Captured) -> None:

@@ -11,13 +11,14 @@ import pytest
 from factories import small_scenario
 from rich.console import Console
 
-from mrta_zoo.debug import Stepper
+from mrta_zoo.debug import Stepper, make_advisor
 from mrta_zoo.debug.screen import AROUND, prompt, screen, table
 from mrta_zoo.debug.session import COMMANDS, Session
 from mrta_zoo.debug.terminal import interact, run_script
 from mrta_zoo.errors import ActionError, ConfigError, MrtaError
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.io import read_trace
+from mrta_zoo.plan import Plan
 
 SCENARIO = small_scenario(2, tasks=12, robots=3)
 
@@ -170,6 +171,17 @@ def test_saving_and_loading(tmp_path: Path) -> None:
     assert steps.stepper.advice == trace.choices[1]
     with pytest.raises(ActionError, match="the mission is over, after"):
         scripted("end\nfollow")
+
+
+def test_a_plans_advice_is_for_its_own_mission(tmp_path: Path) -> None:
+    other = small_scenario(9, tasks=5, robots=4)
+    Stepper(other, "nearest").save(tmp_path / "other.json")
+    for method, advised in (("nearest", True), (Plan(((0,), (), ())), False)):
+        advisor = make_advisor(SCENARIO, method)
+        steps = Session(Stepper(SCENARIO, advisor), advisor)
+        assert steps.do(f"load {tmp_path / 'other.json'}") == "0 decisions loaded; decision 0: robot 0 chooses at 0.0"
+        assert steps.stepper.scenario == other
+        assert (steps.stepper.advice is not None) == advised
 
 
 def typed(monkeypatch: pytest.MonkeyPatch, steps: Session, *lines: str) -> str:
