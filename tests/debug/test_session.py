@@ -106,7 +106,6 @@ def test_a_screen_fits_and_pages_show_all(tasks: int, robots: int, sizes: list[t
         for command in everything if tasks <= 100 else ("goto 100", "robots"):
             steps.do(command)
             listing, seen = steps.listing(), []
-            columns = len(listing.columns)
             while True:
                 shown = lines_of(screen(steps, height - AROUND, width, "message"), width)
                 assert len(shown) <= height - 1  # the prompt comes on the last
@@ -116,7 +115,9 @@ def test_a_screen_fits_and_pages_show_all(tasks: int, robots: int, sizes: list[t
                 if f"page {steps.view.page + 1} of" not in "\n".join(shown) or "next" not in shown[-2]:
                     break
                 steps.do("n")
-            first = next(index for index in range(columns) if listing.columns[index])  # the cell that names the row
+            first = next(
+                index for index in range(len(listing.columns)) if listing.columns[index]
+            )  # the cell that names the row
             assert len(seen) == len(listing.rows)
             names = [row.cells[first].split()[0] for row in listing.rows]
             assert all(name in cells for name, cells in zip(names, seen, strict=True))
