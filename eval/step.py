@@ -116,8 +116,7 @@ def _begin(command: Step) -> Session:
             advisor = _advisor(scenario, command.policy or DEFAULT, command.planning)
             rule = {"mask_rule": command.planning.mask_rule} if command.planning.mask_rule else {}
             return Session(Stepper(scenario, advisor, **rule), advisor, command.session)
-        name = command.policy or (resumed.method if resumed.method in method_names() else NOBODY)
-        advisor = _advisor(resumed.scenario, name, command.planning)
+        advisor = _advisor_again(resumed, command.policy, command.planning)
         return Session(Stepper.resume(resumed, advisor), advisor, command.session)
 
 
@@ -137,6 +136,18 @@ def _advisor(scenario: Scenario, name: str, planning: PlanningFlags) -> Advisor 
     if plan is not None:
         return make_advisor(scenario, plan, mask_rule=planning.mask_rule)
     return make_advisor(scenario, name, **asdict(planning))
+
+
+def _advisor_again(trace: Trace, name: str | None, planning: PlanningFlags) -> Advisor | None:
+    """The one that the flags name, or else the one that a session had, as it was."""
+    if name is not None:
+        return _advisor(trace.scenario, name, planning)
+    if trace.method not in method_names():
+        return None
+    options = asdict(planning) | {"mask_rule": trace.mask_rule, "decode": trace.decode or planning.decode}
+    if trace.seed is not None:
+        options["seed"] = trace.seed
+    return make_advisor(trace.scenario, trace.method, **options)
 
 
 def read_any_plan(path: Path) -> Plan | None:

@@ -38,7 +38,7 @@ def header(session: Session) -> list[RenderableType]:
     stepper = session.stepper
     mission, scenario = stepper.mission, stepper.scenario
     count = np.bincount(mission.status, minlength=len(Status))
-    place = f"decision {stepper.position}" + (f" of {len(stepper)} so far" if stepper.position < len(stepper) else "")
+    place = f"decision {stepper.position}" + (f"/{len(stepper)}" if stepper.position < len(stepper) else "")
     lines = [
         (f"{scenario.name}: {scenario.num_tasks} tasks, {scenario.num_robots} robots, {stepper.mask_rule}", "bold"),
         (

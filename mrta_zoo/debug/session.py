@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn, get_args
 
-from mrta_zoo.debug.advisors import Advisor
+from mrta_zoo.debug.advisors import Advisor, PolicyAdvisor
 from mrta_zoo.debug.outlook import SortKey
 from mrta_zoo.debug.pages import Listing, View, listing
 from mrta_zoo.debug.stepper import Stepper
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.io import read_trace
 from mrta_zoo.trace import Choice
 
 
@@ -139,7 +140,11 @@ class Session:
         return f"{len(self.stepper)} decisions saved to {path}"
 
     def load(self, file: str) -> str:
-        self.stepper = Stepper.load(file, self._advisor)
+        trace = read_trace(file)
+        same = trace.scenario == self.stepper.scenario
+        # A policy advises on any mission, a plan only on its own.
+        advisor = self._advisor if same or isinstance(self._advisor, PolicyAdvisor) else None
+        self.stepper = Stepper.resume(trace, advisor)
         self.path, self.unsaved = Path(file), 0
         return f"{len(self.stepper)} decisions loaded; {self.where()}"
 

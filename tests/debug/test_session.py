@@ -11,13 +11,14 @@ import pytest
 from factories import small_scenario
 from rich.console import Console
 
-from mrta_zoo.debug import Stepper
+from mrta_zoo.debug import Stepper, make_advisor
 from mrta_zoo.debug.screen import AROUND, prompt, screen, table
 from mrta_zoo.debug.session import COMMANDS, Session
 from mrta_zoo.debug.terminal import interact, run_script
 from mrta_zoo.errors import ActionError, ConfigError, MrtaError
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.io import read_trace
+from mrta_zoo.plan import Plan
 
 SCENARIO = small_scenario(2, tasks=12, robots=3)
 
@@ -105,7 +106,6 @@ def test_a_screen_fits_and_pages_show_all(tasks: int, robots: int, sizes: list[t
         for command in everything if tasks <= 100 else ("goto 100", "robots"):
             steps.do(command)
             listing, seen = steps.listing(), []
-            columns = len(listing.columns)
             while True:
                 shown = lines_of(screen(steps, height - AROUND, width, "message"), width)
                 assert len(shown) <= height - 1  # the prompt comes on the last
@@ -115,7 +115,9 @@ def test_a_screen_fits_and_pages_show_all(tasks: int, robots: int, sizes: list[t
                 if f"page {steps.view.page + 1} of" not in "\n".join(shown) or "next" not in shown[-2]:
                     break
                 steps.do("n")
-            first = next(index for index in range(columns) if listing.columns[index])  # the cell that names the row
+            first = next(
+                index for index in range(len(listing.columns)) if listing.columns[index]
+            )  # the cell that names the row
             assert len(seen) == len(listing.rows)
             names = [row.cells[first].split()[0] for row in listing.rows]
             assert all(name in cells for name, cells in zip(names, seen, strict=True))
@@ -170,6 +172,17 @@ def test_saving_and_loading(tmp_path: Path) -> None:
     assert steps.stepper.advice == trace.choices[1]
     with pytest.raises(ActionError, match="the mission is over, after"):
         scripted("end\nfollow")
+
+
+def test_a_plans_advice_is_for_its_own_mission(tmp_path: Path) -> None:
+    other = small_scenario(9, tasks=5, robots=4)
+    Stepper(other, "nearest").save(tmp_path / "other.json")
+    for method, advised in (("nearest", True), (Plan(((0,), (), ())), False)):
+        advisor = make_advisor(SCENARIO, method)
+        steps = Session(Stepper(SCENARIO, advisor), advisor)
+        assert steps.do(f"load {tmp_path / 'other.json'}") == "0 decisions loaded; decision 0: robot 0 chooses at 0.0"
+        assert steps.stepper.scenario == other
+        assert (steps.stepper.advice is not None) == advised
 
 
 def typed(monkeypatch: pytest.MonkeyPatch, steps: Session, *lines: str) -> str:
