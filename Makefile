@@ -5,13 +5,18 @@ VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/installed
 
-.PHONY: demo test lint wheel-test benchmark clean
+.PHONY: demo test test-browser lint wheel-test benchmark clean
 
 demo: $(INSTALLED)
 	$(BIN)/mrta-zoo demo
 
 test: $(INSTALLED)
 	$(BIN)/python -m pytest -n 2
+
+# The replay page in headless Chromium, which the system must have; without it these tests are skipped.
+test-browser: $(INSTALLED)
+	$(BIN)/pip install --quiet --constraint constraints.txt --editable ".[browser]"
+	$(BIN)/python -m pytest -m browser -rs tests/browser
 
 # mypy must see the package as it is installed, with policies/, train/ and eval/ inside mrta_zoo/.
 lint: $(INSTALLED)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -69,6 +70,18 @@ class NeuralPolicy:
         self._generator = torch.Generator().manual_seed(seed)
         self._encoded_for: object = None
         self._encoding: Any = None
+
+    @property
+    def memoryless(self) -> bool:
+        """Whether what it does depends on the observation alone, and not on what it was asked before."""
+        return self.decode != "sample"
+
+    def fork(self) -> NeuralPolicy:
+        """A policy that goes on as this one would, with draws of its own, on the same network."""
+        twin = copy.copy(self)
+        twin._generator = torch.Generator()
+        twin._generator.set_state(self._generator.get_state())
+        return twin
 
     def act(self, observation: Observation, agent: str = "") -> int:
         """The task to take. `agent` is not needed: the observation says whose it is."""
