@@ -21,8 +21,10 @@ from mrta_zoo.trace import Choice, Trace
 SCENARIO = small_scenario(2, tasks=12, robots=3)
 
 
-@pytest.mark.parametrize("rule", [None, "unvisited"])
-@pytest.mark.parametrize("name", [*method_names(), "nearest+polish"])
+@pytest.mark.parametrize(
+    ("name", "rule"),
+    [*((name, None) for name in (*method_names(), "nearest+polish")), ("edf", "unvisited"), ("capam", "active")],
+)
 def test_every_method_is_recorded_as_it_plans(name: str, rule: Any) -> None:
     if name in ("capam", "capam-plus"):
         pytest.importorskip("torch")
