@@ -19,6 +19,7 @@ import os
 import shutil
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import torch
 
@@ -139,11 +140,21 @@ def policy_info(run: Reinforce, seconds: float) -> PolicyInfo:
         "validation_completion": last.completion,
         "validation_cost": last.cost,
     }
-    config = run.config
+    return info_of(run.config, trained)
+
+
+def info_of(config: TrainConfig, trained: dict[str, Any]) -> PolicyInfo:
+    """What belongs to the weights of a run.
+
+    Args:
+        config: the run's.
+        trained: how it went, for people to read.
+    """
     return PolicyInfo(
         network=config.network,
         sharing=config.sharing,
         robots=most_robots(config),
+        kinds=config.kinds,
         mask_rule=config.mask_rule,
         trained=trained,
     )

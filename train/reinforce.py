@@ -98,14 +98,22 @@ class Reinforce:
             options: what makes it quicker.
 
         Raises:
-            ConfigError: if `config.initial` names no policy, or one of another architecture.
+            ConfigError: if `config.initial` names no policy, or one of another architecture; or if there is to be a
+                network for each kind of robots, and the configuration's generator draws any kind.
         """
         options = options or RunOptions()
         self.config = config
         self.device = _device(config.device)
         self.generator = generator
         self.objective = OBJECTIVES[config.objective]
-        self.network: Network = build_network(config.network, config.sharing, most_robots(config), config.seed)
+        if generator is None and config.sharing == "by-capacity" and config.generator != "taptc":
+            raise ConfigError(
+                f"sharing is 'by-capacity', a network for each of a few kinds of robots, and generator "
+                f"{config.generator!r} draws any capacity; expected generator taptc, or one of your own"
+            )
+        self.network: Network = build_network(
+            config.network, config.sharing, most_robots(config), config.seed, config.kinds
+        )
         if config.initial:
             self._start_from(config.initial)
         self.network.to(self.device)
@@ -120,7 +128,7 @@ class Reinforce:
         self.history: list[Validation] = []
         self._validation: ScenarioBatch | None = None
         self._feed = Feed(config, generator, options.workers if self.device.type == "cuda" else 0)
-        # An encoding of independent networks is not worth the care: they are for comparisons, not for speed.
+        # Encodings of several networks are not worth the care: they are for comparisons, not for speed.
         graphs = self.device.type == "cuda" and config.sharing == "shared"
         self._graphed = (
             GraphedRollout(self.network, config.samples, config.mask_rule, config.precision, self.device)
@@ -244,11 +252,14 @@ class Reinforce:
         from mrta_zoo.policies.weights import load_state
 
         policy, config = load_policy(initial), self.config
-        if (policy.info.network, policy.info.sharing) != (config.network, config.sharing):
+        info = policy.info
+        if (info.network, info.sharing) != (config.network, config.sharing):
             raise ConfigError(
-                f"initial is {initial!r}, which is {policy.info.sharing} {policy.info.network}; "
+                f"initial is {initial!r}, which is {info.sharing} {info.network}; "
                 f"the run is {config.sharing} {config.network}"
             )
+        if info.sharing == "by-capacity" and info.kinds != config.kinds:
+            raise ConfigError(f"initial is {initial!r}, for kinds {info.kinds}; the run is for kinds {config.kinds}")
         load_state(self.network, dict(policy.network.state_dict()), Path(initial))
 
     def set_plans(self, plans: Sequence[ExpertPlan]) -> None:
