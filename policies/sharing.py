@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal, cast
 
 import torch
@@ -161,11 +162,11 @@ def check_kinds(kinds: Sequence[float]) -> None:
     Raises:
         ConfigError: if they are not.
     """
-    apart = all(low + 2 * SAME_KIND < high for low, high in zip(kinds, kinds[1:], strict=False))
-    if not kinds or not 0 < kinds[0] or not apart or kinds[-1] != 1:
+    apart = all(low + 2 * SAME_KIND < high for low, high in pairwise(kinds))
+    if not kinds or not kinds[0] > 0 or not apart or kinds[-1] != 1:
         raise ConfigError(
-            f"kinds is {tuple(kinds)}; expected capacities as shares of the strongest robot's, > 0, ascending, at least "
-            f"{2 * SAME_KIND:g} apart, the last one 1"
+            f"kinds is {tuple(kinds)}; expected capacities as shares of the strongest robot's, such as 0.5 and 1: "
+            f"> 0, ascending, more than {2 * SAME_KIND:g} apart, the last one 1"
         )
 
 

@@ -105,6 +105,18 @@ def saved_config(folder: Path) -> TrainConfig:
     return read_json(folder / "config.json", TrainConfig)
 
 
+def seconds_spent(folder: Path) -> float:
+    """Time spent training the run in `folder`, as of its last checkpoint.
+
+    Raises:
+        ConfigError: if there is no checkpoint, or it is damaged.
+    """
+    numbers = _checkpoints(folder)
+    if not numbers:
+        raise ConfigError(f"{folder} holds no checkpoint; expected the folder of a training run")
+    return read_json(folder / "checkpoints" / _name(numbers[-1]) / "state.json", RunState).seconds
+
+
 def save(folder: Path, run: Reinforce, seconds: float) -> None:
     """Write a checkpoint of the run, which was just validated, drop old ones, and keep the best policy."""
     final = folder / "checkpoints" / _name(run.update)

@@ -7,15 +7,15 @@ import pytest
 from scipy import stats
 
 from mrta_zoo.eval.ablation.claims import Claim
-from mrta_zoo.eval.ablation.effects import Effect, arrange, effect_of, run_values
-from mrta_zoo.eval.ablation.rows import AblationRow
 from mrta_zoo.eval.statistics import ALL_EQUAL, TOO_FEW, Estimate
+from mrta_zoo.eval.training.effects import Effect, arrange, effect_of, run_values
+from mrta_zoo.eval.training.rows import RunRow
 
 
-def rows(variant: str, seed: int, completed: dict[int, list[int]]) -> list[AblationRow]:
+def rows(variant: str, seed: int, completed: dict[int, list[int]]) -> list[RunRow]:
     """Rows of a run on scenarios with 10 tasks, by number of robots."""
     return [
-        AblationRow(variant, seed, "taptc", robots, index, count, 10)
+        RunRow(variant, seed, "taptc", robots, index, count, 10)
         for robots, counts in completed.items()
         for index, count in enumerate(counts)
     ]
