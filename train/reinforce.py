@@ -32,7 +32,7 @@ from mrta_zoo.train.distribution import draw_size, most_robots, training_generat
 from mrta_zoo.train.experts import ExpertPlan
 from mrta_zoo.train.graphed_rollout import GraphedRollout
 from mrta_zoo.train.imitation import PlanBatch, follow, turned
-from mrta_zoo.train.objective import OBJECTIVES
+from mrta_zoo.train.objective import OBJECTIVES, Objective
 from mrta_zoo.train.precision import Precision, autocast
 from mrta_zoo.train.scenarios import Feed
 
@@ -88,7 +88,11 @@ class Reinforce:
     """
 
     def __init__(
-        self, config: TrainConfig, generator: ScenarioGenerator | None = None, options: RunOptions | None = None
+        self,
+        config: TrainConfig,
+        generator: ScenarioGenerator | None = None,
+        options: RunOptions | None = None,
+        objective: Objective | None = None,
     ) -> None:
         """Start afresh.
 
@@ -96,6 +100,7 @@ class Reinforce:
             config: the run.
             generator: draws the scenarios; by default, as `config.generator` says.
             options: what makes it quicker.
+            objective: what to minimise, see `mrta_zoo.train.objective`; by default, as `config.objective` says.
 
         Raises:
             ConfigError: if `config.initial` names no policy, or one of another architecture; or if there is to be a
@@ -105,7 +110,7 @@ class Reinforce:
         self.config = config
         self.device = _device(config.device)
         self.generator = generator
-        self.objective = OBJECTIVES[config.objective]
+        self.objective = objective or OBJECTIVES[config.objective]
         if generator is None and config.sharing == "by-capacity" and config.generator != "taptc":
             raise ConfigError(
                 f"sharing is 'by-capacity', a network for each of a few kinds of robots, and generator "

@@ -77,8 +77,8 @@ def sharing_command(argv: Sequence[str]) -> None:
             held_out=replace(every, robots=arm.robots),
             distributions=(DISTRIBUTION,),
         )
+        for seed in range(command.seeds)  # all arms with a seed before the next one
         for arm in arms.values()
-        for seed in range(command.seeds)
     ]
     settings = {"only": [question.name for question in questions], "seeds": command.seeds, **asdict(budget),
                 "held_out": command.held_out}  # fmt: skip
