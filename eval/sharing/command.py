@@ -89,7 +89,7 @@ def sharing_command(argv: Sequence[str]) -> None:
     rows, sessions = perform_study(command.out, manifest, jobs, command.workers)
     study = Study(
         questions=questions,
-        arms=arms,
+        arms={name: arms[name] for question in questions for name in question.arms},
         budget=budget,
         seeds=command.seeds,
         held_out=every,

@@ -154,8 +154,9 @@ def _differences(study: Study, comparisons: Sequence[Comparison]) -> Section:
         "Equal episodes: all see the same missions; a shared network learns from every decision of every robot, one "
         f"of {MOST} independent ones from those of its robot. Equal decisions a network: “fewer” networks get so many "
         f"fewer scenarios at each update, 1/{MOST} for the shared one, that each network takes as many steps as an "
-        "independent one, from as many decisions (mean over networks). What is left of a difference is then not due to "
-        "data.",
+        "independent one, from as many decisions (mean over networks). They come from fewer missions, though, and a "
+        "mission has one outcome, whoever decides in it: at equal decisions a shared network learns from fewer "
+        "outcomes.",
     )
     return Section(title="Differences", text=text, tables=(table,))
 
@@ -283,7 +284,8 @@ def _curves(study: Study) -> Section:
     caption = (
         "Greedy completion on each run’s own validation scenarios, which runs of equal seeds share; mean over "
         f"{wording.counted(study.seeds, 'run')}. Bands are Student’s {100 * LEVEL:.0f} % intervals of the mean over "
-        "runs. Left of equal number: episodes sampled; right: episodes for each network that learned from them."
+        "runs. At equal episodes: against the episodes sampled; at equal decisions a network: against the episodes "
+        "sampled over the number of networks that share their decisions."
     )
     picture = Picture(name="learning_curves", caption=caption, figure=draw_curves(study, data), data=data)
     return Section(title="Learning curves", pictures=(picture,))

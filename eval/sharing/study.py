@@ -56,7 +56,7 @@ class Study:
 
     Attributes:
         questions: that were asked.
-        arms: that were trained, by name.
+        arms: that were trained, by name, in the order of the questions.
         budget: of the runs.
         seeds: number of runs of each arm.
         held_out: the scenarios, with all the numbers of robots.
