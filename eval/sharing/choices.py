@@ -6,6 +6,7 @@ none of them; only those where there is something to choose count.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import combinations
@@ -102,7 +103,8 @@ def divergence(one: Tensor, other: Tensor) -> Tensor:
 
 def entropy(probabilities: Tensor) -> Tensor:
     """(D,) entropy in bits of (D, N) probabilities."""
-    return torch.special.entr(probabilities).sum(-1) / torch.log(torch.tensor(2.0))
+    bits: Tensor = torch.special.entr(probabilities).sum(-1) / math.log(2)
+    return bits
 
 
 class Questionnaire:
