@@ -58,6 +58,8 @@ def draw_curves(study: Study, data: pd.DataFrame) -> Figure:
             x, colour = of_arm[_measure(question)], COLOURS[sharing]
             if of_arm["low"].notna().all():
                 axes.fill_between(x, of_arm["low"], of_arm["high"], color=colour, alpha=0.15, linewidth=0)
+            for seed in range(study.seeds):
+                axes.plot(x, of_arm[f"seed_{seed}"], color=colour, linewidth=0.7, alpha=0.5)
             axes.plot(x, of_arm["percent"], color=colour, linewidth=2, label=name)
         axes.set_title(question.title, fontsize=10, color=INK, loc="left")
         axes.set_xlabel(_measure(question).replace("_", " "), fontsize=9, color=FAINT)

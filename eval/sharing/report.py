@@ -282,10 +282,11 @@ def _costs(study: Study, sessions: Sequence[Session]) -> Section:
 def _curves(study: Study) -> Section:
     data = curves_data(study)
     caption = (
-        "Greedy completion on each run’s own validation scenarios, which runs of equal seeds share; mean over "
-        f"{wording.counted(study.seeds, 'run')}. Bands are Student’s {100 * LEVEL:.0f} % intervals of the mean over "
-        "runs. At equal episodes: against the episodes sampled; at equal decisions a network: against the episodes "
-        "sampled over the number of networks that share their decisions."
+        "Greedy completion on each run’s own validation scenarios, which runs of equal seeds share. Thin: runs; bold: "
+        f"the mean over {wording.counted(study.seeds, 'run')}; bands: Student’s {100 * LEVEL:.0f} % interval of that "
+        "mean, other validation scenarios for other seeds included. At equal episodes: against the episodes sampled; "
+        "at equal decisions a network: against the episodes sampled over the number of networks that share their "
+        "decisions."
     )
     picture = Picture(name="learning_curves", caption=caption, figure=draw_curves(study, data), data=data)
     return Section(title="Learning curves", pictures=(picture,))
