@@ -86,6 +86,14 @@ def _ablate(argv: list[str]) -> None:
     ablate_command(argv)
 
 
+def _sharing(argv: list[str]) -> None:
+    require("torch", "training")
+    require("report", "the report")
+    from mrta_zoo.eval.sharing.command import sharing_command
+
+    sharing_command(argv)
+
+
 def _demo(argv: list[str]) -> None:
     from mrta_zoo.eval.commands import demo_command
 
@@ -103,6 +111,7 @@ COMMANDS: dict[str, tuple[str, Command]] = {
     "reproduce": ("run the experiments of the CapAM paper and write a report", _reproduce),
     "converge": ("measure plan quality against planning time, and draw it", _converge),
     "ablate": ("train variants that differ in one thing each, and compare them", _ablate),
+    "sharing": ("train one policy for all robots, one by kind and one for each, and compare them", _sharing),
     "demo": ("see it all at work, in a few minutes", _demo),
 }
 """Each command with what `mrta-zoo --help` says of it. To add one, give it an entry."""
