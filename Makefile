@@ -4,8 +4,9 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 INSTALLED := $(VENV)/installed
+INTEGRATIONS := .venv-integrations
 
-.PHONY: demo test test-browser lint wheel-test benchmark clean
+.PHONY: demo test test-browser test-integrations lint wheel-test benchmark clean
 
 demo: $(INSTALLED)
 	$(BIN)/mrta-zoo demo
@@ -17,6 +18,10 @@ test: $(INSTALLED)
 test-browser: $(INSTALLED)
 	$(BIN)/pip install --quiet --constraint constraints.txt --editable ".[browser]"
 	$(BIN)/python -m pytest -m browser -rs tests/browser
+
+# RLlib, TorchRL, SB3, SuperSuit and Tianshou learn a small problem each, in an environment of their own.
+test-integrations: $(INTEGRATIONS)/installed
+	OMP_NUM_THREADS=1 $(INTEGRATIONS)/bin/python -m pytest -n 2 --dist loadgroup -m integrations -W ignore tests/integrations
 
 # mypy must see the package as it is installed, with policies/, train/ and eval/ inside mrta_zoo/.
 lint: $(INSTALLED)
@@ -43,5 +48,13 @@ $(INSTALLED): pyproject.toml constraints.txt
 	PYTHONWARNINGS=ignore $(BIN)/pip install --quiet --constraint constraints.txt --editable ".[dev]"
 	touch $(INSTALLED)
 
+# Not compiled ahead: most of it is never imported.
+$(INTEGRATIONS)/installed: pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(INTEGRATIONS)
+	$(INTEGRATIONS)/bin/pip install --quiet --upgrade pip
+	PYTHONWARNINGS=ignore $(INTEGRATIONS)/bin/pip install --quiet --no-compile --constraint constraints.txt \
+		--editable ".[integrations]" "pytest>=8" "pytest-xdist>=3.5"
+	touch $@
+
 clean:
-	rm -rf $(VENV) build dist *.egg-info
+	rm -rf $(VENV) $(INTEGRATIONS) build dist *.egg-info

@@ -6,7 +6,7 @@ Creation                 ``mrta_v0.env()``, ``mrta_v0.raw_env()``, ``mrta_v0.par
                          PettingZoo >= 1.27 ``pettingzoo.make("aec", "mrta_zoo/mrta-v0")`` (or "parallel")
 Agents                   ``robot_0`` … ``robot_{max_robots-1}``; 7 possible agents by default
 Actions                  ``Discrete(max_tasks)``; parallel form ``Discrete(max_tasks + 1)``
-Observations             ``Dict`` of tables and ``action_mask``, or a flat ``Box``; float32 in [0, 1]
+Observations             ``Dict`` of tables or a vector, and ``action_mask``, or a flat ``Box``; float32 in [0, 1]
 State                    ``Box``, float32 in [0, 1]
 Turns                    event-driven: the robot that becomes free first acts next
 Manual control           no
@@ -53,8 +53,9 @@ reward is `illegal_reward`, the others' is 0. One outside the action space raise
 Observations
 ------------
 ``{"observation": {"tasks", "robots", "ego", "mission"}, "action_mask"}``; `mrta_zoo.observation` lists the columns.
-With ``observation="flat"`` it is one vector, the same tables one after another (`observation.split` takes it apart
-again), and the mask is in ``infos[agent]["action_mask"]``. `observe` answers for every possible agent at any time; one
+With ``observation="masked"`` it is ``{"observation", "action_mask"}`` with one vector, the same tables one after
+another (`observation.split` takes it apart again); with ``observation="flat"`` the vector alone, and the mask is in
+``infos[agent]["action_mask"]``. `observe` answers for every possible agent at any time; one
 that the scenario does not have sees an ``ego`` of zeros and an empty mask. `state()` is the vector of tasks, robots and
 mission without what belongs to one observer; its size is ``8 max_tasks + 6 max_robots + 3``.
 
@@ -95,8 +96,14 @@ from its generator. The same seed gives the same episode; without a seed the ran
 
 Parallel form
 -------------
-`parallel_env(…)` takes the same arguments and ``on_illegal="terminate"`` or ``"raise"``; see `mrta_zoo.parallel`. It is
-an implementation of its own because PettingZoo's conversion asks for agents that take cyclic turns.
+`parallel_env(…)` takes the same arguments and ``on_illegal="terminate"``, ``"raise"`` or ``"replace"``; see
+`mrta_zoo.parallel`. It is an implementation of its own because PettingZoo's conversion asks for agents that take cyclic
+turns.
+
+Other forms
+-----------
+`mrta_zoo.gym_view.ActingRobotEnv` is a Gymnasium environment, in which one agent acts for each robot in its turn;
+`mrta_zoo.dead_steps.SkipDeadSteps` a wrapper that steps for agents that have terminated.
 
 Rendering
 ---------
@@ -226,8 +233,7 @@ class raw_env(EnvBase, AECEnv[str, Any, Any]):  # noqa: N801  (PettingZoo's name
     def observe(self, agent: str) -> Any:
         """What an agent sees now; any possible agent, at any time after the first reset."""
         robot = self._world.robot(agent)
-        seen = self._world.seen_by(robot)
-        return seen if self._world.flat else {"observation": seen, "action_mask": self._world.mask(robot)}
+        return self._world.seen_by(robot, self._world.mask(robot))
 
     def _settle(self, rewards: list[float]) -> None:
         """Enter the books after the clock has moved: rewards, terminations, infos, who is next."""

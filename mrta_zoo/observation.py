@@ -123,11 +123,11 @@ def state_space(max_tasks: int, max_robots: int) -> spaces.Box:
     return spaces.Box(0.0, 1.0, (size,), np.float32)
 
 
-def split(flat: FloatTable, max_tasks: int, max_robots: int) -> dict[str, FloatTable]:
+def split(flat: Any, max_tasks: int, max_robots: int) -> dict[str, Any]:
     """The tables within a flat observation, as views.
 
     Args:
-        flat: (..., F) float32, one or more observations in the flat form.
+        flat: (..., F) float32, one or more observations in the flat form, as NumPy array or torch tensor.
         max_tasks: the environment's number of task rows.
         max_robots: the environment's number of robot rows.
 

@@ -10,7 +10,8 @@ others choose again in the next step: the clock does not move, and their ``infos
 **Illegal actions** are those the mask forbids, also the no-op (or no action) of a robot that must choose. By
 ``on_illegal="terminate"`` they end the episode for everyone: each agent that sent one is rewarded with
 `illegal_reward`, the others with 0, and no task is taken. By ``on_illegal="raise"`` they raise `ActionError` and change
-nothing. An action outside the action space, or one for an agent that is not there, always raises.
+nothing. By ``on_illegal="replace"`` each stands for the next legal action, from it upwards and then from 0, for
+learners that know no masks. An action outside the action space, or one for an agent that is not there, always raises.
 
 Observations, rewards, infos and termination are those of the AEC form, except that ``action_mask`` is
 (max_tasks + 1,) and is the mask of this very step; ``mask_reason`` stays (max_tasks,) and tells why a task is masked
@@ -36,7 +37,7 @@ from mrta_zoo.env_base import EnvBase
 from mrta_zoo.errors import ActionError
 from mrta_zoo.render import RENDER_FPS, RENDER_MODES
 from mrta_zoo.settings import Illegal, Settings, one_of
-from mrta_zoo.world import Info
+from mrta_zoo.world import Info, next_legal
 
 StepResult = tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Info]]
 
@@ -45,7 +46,7 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
     """The parallel environment. Can be pickled and deep-copied at any moment.
 
     Args:
-        on_illegal: what an illegal action does: ``"terminate"`` or ``"raise"``.
+        on_illegal: what an illegal action does: ``"terminate"``, ``"raise"`` or ``"replace"``.
         illegal_reward: reward of an agent whose illegal action ends the episode.
         **options: see `mrta_zoo.settings.Settings`.
 
@@ -100,7 +101,9 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
             return {}, {}, {}, {}, {}
         choices = self._choices(actions)
         illegal = [agent for agent, action in choices.items() if not self.mask(agent)[action]]
-        if illegal:
+        if illegal and self.on_illegal == "replace":
+            choices |= {agent: next_legal(self.mask(agent), choices[agent]) for agent in illegal}
+        elif illegal:
             if self.on_illegal == "raise":
                 raise self._illegal(illegal[0], choices[illegal[0]])
             EnvLogger.warn_on_illegal_move()
@@ -126,8 +129,7 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
 
     def observe(self, agent: str) -> Any:
         """What an agent sees now; any possible agent, at any time after the first reset."""
-        seen = self._world.seen_by(self._world.robot(agent))
-        return seen if self._world.flat else {"observation": seen, "action_mask": self.mask(agent)}
+        return self._world.seen_by(self._world.robot(agent), self.mask(agent))
 
     def mask(self, agent: str) -> npt.NDArray[np.int8]:
         """(max_tasks + 1,) int8, 1 where the agent may choose in this step."""

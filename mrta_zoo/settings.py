@@ -17,9 +17,9 @@ from mrta_zoo.rules import MaskRule, check_mask_rule
 from mrta_zoo.scenario import Scenario
 
 Generator = Callable[[np.random.Generator], Scenario]
-ObservationForm = Literal["dict", "flat"]
+ObservationForm = Literal["dict", "masked", "flat"]
 RenderMode = Literal["ansi", "human", "rgb_array"]
-Illegal = Literal["terminate", "raise"]
+Illegal = Literal["terminate", "raise", "replace"]
 
 DEFAULT_MAX_TASKS, DEFAULT_MAX_ROBOTS = 100, 7
 
@@ -37,7 +37,8 @@ class Settings:
         max_robots: room for robots, >= 1: the number of possible agents. Default likewise, else 7.
         mask_rule: which untaken tasks a robot may choose, see `rules.MaskRule`.
         reward: what the robots are rewarded for, a name or a function, see `rewards`.
-        observation: ``"dict"`` of tables with the mask, or ``"flat"``: one vector, the mask in ``infos``.
+        observation: ``"dict"`` of tables with the mask, ``"masked"``: one vector with the mask, or ``"flat"``: the
+            vector alone, the mask in ``infos``.
         staggered: whether a robot terminates as soon as it retires, instead of all together at the end.
         render_mode: what `render` gives: None, ``"ansi"`` (text), ``"rgb_array"`` (a picture), or ``"human"`` (shows
             the picture in a window at each step); the last two need ``mrta_zoo[render]``.

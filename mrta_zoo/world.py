@@ -49,10 +49,7 @@ class World:
         self.names = [f"robot_{robot}" for robot in range(m)]
         self.index = {name: robot for robot, name in enumerate(self.names)}
         self.action_spaces = {name: spaces.Discrete(num_actions) for name in self.names}
-        self.flat = settings.observation == "flat"
-        self.observation_space: spaces.Space[Any] = (
-            flat_space(n, m) if self.flat else observation_space(n, m, num_actions)
-        )
+        self.observation_space = self._space(num_actions)
         self.state_space = state_space(n, m)
         self.agents: list[str] = []
         self.completed = 0
@@ -134,10 +131,12 @@ class World:
         mask: npt.NDArray[np.int8] = (self._reasons[robot] == _CHOOSABLE).view(np.int8)
         return mask
 
-    def seen_by(self, robot: int) -> Any:
-        """What `robot` sees now: tables, or a vector in the flat form."""
+    def seen_by(self, robot: int, mask: npt.NDArray[np.int8]) -> Any:
+        """What `robot` sees now, in the form that the settings ask for; `mask` goes with it in all but the flat one."""
         self._look()
-        return self._observer.flat(robot) if self.flat else self._observer.tables(robot)
+        form = self.settings.observation
+        seen = self._observer.tables(robot) if form == "dict" else self._observer.flat(robot)
+        return seen if form == "flat" else {"observation": seen, "action_mask": mask}
 
     def state(self) -> FloatTable:
         """(S,) the global state."""
@@ -170,6 +169,13 @@ class World:
             raise ActionError(f"{agent} sent action {action!r}; expected a whole number from 0 to {last}")
         return number
 
+    def _space(self, num_actions: int) -> spaces.Space[Any]:
+        n, m = self.max_tasks, len(self.names)
+        tables, flat = observation_space(n, m, num_actions), flat_space(n, m)
+        if self.settings.observation == "masked":
+            return spaces.Dict([("observation", flat), ("action_mask", tables["action_mask"])])
+        return flat if self.settings.observation == "flat" else tables
+
     def _look(self) -> None:
         mission = self.mission
         if not self._looked:
@@ -185,6 +191,11 @@ class World:
                 f"the reward function gave {len(rewards)} numbers; expected {len(self.agents)}, one for each robot"
             )
         return rewards
+
+
+def next_legal(mask: npt.NDArray[Any], action: int) -> int:
+    """The first action that the mask allows, from `action` on and then from 0."""
+    return int(np.roll(mask, -action).argmax() + action) % len(mask)
 
 
 def _scenario_option(options: dict[str, Any] | None) -> Scenario | None:

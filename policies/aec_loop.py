@@ -7,9 +7,16 @@ from mrta_zoo.plan import Plan
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.settings import ObservationForm
 
 
-def run_in_environment(policy: Policy, scenario: Scenario, mask_rule: MaskRule = "feasible", method: str = "") -> Plan:
+def run_in_environment(
+    policy: Policy,
+    scenario: Scenario,
+    mask_rule: MaskRule = "feasible",
+    method: str = "",
+    observation: ObservationForm = "dict",
+) -> Plan:
     """Let `policy` decide for every robot of a mission, and note who took what.
 
     Args:
@@ -17,6 +24,7 @@ def run_in_environment(policy: Policy, scenario: Scenario, mask_rule: MaskRule =
         scenario: the mission.
         mask_rule: what robots may choose, see `rules.MaskRule`.
         method: what the plan is signed with.
+        observation: the form in which the policy reads observations.
 
     Returns:
         The tasks of each robot in the order in which it took them.
@@ -26,15 +34,15 @@ def run_in_environment(policy: Policy, scenario: Scenario, mask_rule: MaskRule =
         ConfigError: if there is no such mask rule.
     """
     # Without the wrappers: they end the mission at an illegal action, where an error is wanted here.
-    env = mrta_v0.raw_env(scenario=scenario, mask_rule=mask_rule)
+    env = mrta_v0.raw_env(scenario=scenario, mask_rule=mask_rule, observation=observation)
     env.reset()
     routes: dict[str, list[int]] = {agent: [] for agent in env.agents}
     for agent in env.agent_iter():
-        observation, _, termination, truncation, _ = env.last()
+        seen, _, termination, truncation, _ = env.last()
         if termination or truncation:
             env.step(None)
             continue
-        task = int(policy.act(observation, agent))
+        task = int(policy.act(seen, agent))
         env.step(task)
         routes[agent].append(task)
     return Plan.of(list(routes.values()), scenario.name, method)

@@ -116,9 +116,9 @@ class NeuralPolicy:
         In the parallel form a robot that is not free takes the no-op.
 
         Raises:
-            ConfigError: if the observation leaves nothing to choose, or is flat.
+            ConfigError: if the observation leaves nothing to choose, or is a vector.
         """
-        if not isinstance(observation, dict):
+        if not (isinstance(observation, dict) and isinstance(observation["observation"], dict)):
             raise ConfigError('a policy reads Dict observations; make the environment with observation="dict"')
         seen, mask = observation["observation"], observation["action_mask"]
         tasks = len(seen["tasks"])

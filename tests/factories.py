@@ -10,7 +10,7 @@ from mrta_zoo import Scenario, mrta_v0
 from mrta_zoo.generators import UniformGenerator
 
 GENERATOR = UniformGenerator(tasks=(3, 10), robots=(2, 5), deadline=(20, 200))
-FORMS = ["dict", "flat"]
+FORMS = ["dict", "masked", "flat"]
 """Of observations."""
 
 

@@ -52,6 +52,8 @@ LAYERS = (
             "mrta_zoo.env_base",
             "mrta_zoo.parallel",
             "mrta_zoo.mrta_v0",
+            "mrta_zoo.dead_steps",
+            "mrta_zoo.gym_view",
         ),
     ),
     ("policies and solvers", ("mrta_zoo.policies",)),

@@ -18,11 +18,14 @@ from mrta_zoo.policies.registry import METHODS
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
 PAGES = [README, *sorted((ROOT / "docs").glob("*.md"))]
-BLOCKS = [
+OTHER_LIBRARIES = re.compile(r"(rllib|torchrl|stable_baselines3|sb3|supersuit|tianshou)(_|\b)")
+ALL_BLOCKS = [
     pytest.param(page, block, id=f"{page.stem}-{number}")
     for page in PAGES
     for number, block in enumerate(re.findall(r"```python\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL))
 ]
+BLOCKS = [each for each in ALL_BLOCKS if not OTHER_LIBRARIES.search(str(each.values[1]))]
+"""The others run in tests/integrations."""
 
 
 @pytest.fixture

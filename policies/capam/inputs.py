@@ -7,7 +7,7 @@ the fastest robot takes to cross the map. Crossings make travel and deadlines co
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -69,9 +69,12 @@ class Tasks:
     @classmethod
     def of_observations(cls, observations: Sequence[Observation], device: torch.device | str = "cpu") -> Tasks:
         """The tasks that each of S observers sees."""
-        seen = [observation["observation"] for observation in observations]
-        tasks = torch.from_numpy(np.stack([each["tasks"] for each in seen])).to(device)
-        mission = torch.from_numpy(np.stack([each["mission"] for each in seen])).to(device)
+        return cls.of_tables(_stacked(observations, ("tasks", "mission"), device))
+
+    @classmethod
+    def of_tables(cls, tables: Mapping[str, Tensor]) -> Tasks:
+        """The same of observations' tables already stacked: ``tasks`` (S, N, 8) and ``mission`` (S, 3)."""
+        tasks, mission = tables["tasks"], tables["mission"]
         return _tasks(
             tasks[..., [_TASK["x"], _TASK["y"]]],
             tasks[..., _TASK["deadline"]],
@@ -114,10 +117,13 @@ class Moments:
     @classmethod
     def of_observations(cls, observations: Sequence[Observation], device: torch.device | str = "cpu") -> Moments:
         """The moments of S observers (G = 1)."""
-        seen = [observation["observation"] for observation in observations]
-        robots = torch.from_numpy(np.stack([each["robots"] for each in seen])).to(device)[:, None]
-        elapsed = torch.from_numpy(np.stack([each["mission"][[_MISSION["elapsed"]]] for each in seen])).to(device)
-        mask = torch.from_numpy(np.stack([o["action_mask"] for o in observations])).to(device)[:, None]
+        mask = torch.from_numpy(np.stack([o["action_mask"] for o in observations])).to(device)
+        return cls.of_tables(_stacked(observations, ("robots", "mission"), device), mask)
+
+    @classmethod
+    def of_tables(cls, tables: Mapping[str, Tensor], mask: Tensor) -> Moments:
+        """The same of tables already stacked: ``robots`` (S, M, 7) and ``mission`` (S, 3), with the mask (S, N)."""
+        robots = tables["robots"][:, None]
         return cls(
             xy=robots[..., [_ROBOT["x"], _ROBOT["y"]]],
             capacity=robots[..., _ROBOT["capacity"]],
@@ -125,8 +131,8 @@ class Moments:
             ready=robots[..., _ROBOT["ready"]],
             working=robots[..., _ROBOT["working"]] > 0,
             ego=robots[..., _ROBOT["is_ego"]].argmax(-1),
-            elapsed=elapsed,
-            mask=mask.bool(),
+            elapsed=tables["mission"][:, [_MISSION["elapsed"]]],
+            mask=mask[:, None].bool(),
         )
 
     @property
@@ -182,6 +188,13 @@ def _scales(s: ScenarioBatch) -> Scales:
         capacity=s.capacity.masked_fill(~s.robot_exists, 0).amax(1),
         speed=s.speed.masked_fill(~s.robot_exists, 0).amax(1),
     )
+
+
+def _stacked(
+    observations: Sequence[Observation], names: tuple[str, ...], device: torch.device | str
+) -> dict[str, Tensor]:
+    seen = [observation["observation"] for observation in observations]
+    return {name: torch.from_numpy(np.stack([each[name] for each in seen])).to(device) for name in names}
 
 
 def _tasks(xy: Tensor, deadline: Tensor, workload: Tensor, exists: Tensor, crossing: Tensor, work: Tensor) -> Tasks:

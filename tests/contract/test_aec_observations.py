@@ -143,13 +143,17 @@ def test_an_observer_can_turn_to_another_mission():
 
 
 def test_flat_holds_the_same_as_the_tables():
-    dicts, flats = started(seed=4, generator=GENERATOR), started(seed=4, generator=GENERATOR, observation="flat")
+    dicts, flats, masked = (
+        started(seed=4, generator=GENERATOR, observation=form) for form in ("dict", "flat", "masked")
+    )
     rng = np.random.default_rng(0)
     while dicts.agents:
         for agent in dicts.possible_agents:
             tables = dicts.observe(agent)["observation"]
             flat = flats.observe(agent)
             assert same(split(flat, 10, 5), tables)
+            mask = dicts.observe(agent)["action_mask"]
+            assert same(masked.observe(agent), {"observation": flat, "action_mask": mask})
             assert np.array_equal(np.concatenate([table.ravel() for table in tables.values()]), flat)
         tables = dicts.observe("robot_0")["observation"]
         state = np.concatenate((tables["tasks"].ravel(), tables["robots"][:, :6].ravel(), tables["mission"]))
@@ -159,6 +163,7 @@ def test_flat_holds_the_same_as_the_tables():
         action = random_action(dicts.infos[dicts.agent_selection]["action_mask"], rng)
         dicts.step(action)
         flats.step(action)
+        masked.step(action)
     with pytest.raises(ConfigError, match=r"has \d+ numbers; this one has 3"):
         split(np.zeros(3, dtype=np.float32), 10, 5)
 

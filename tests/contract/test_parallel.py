@@ -131,6 +131,19 @@ def square() -> Scenario:
     )  # fmt: skip
 
 
+def test_an_illegal_action_may_stand_for_the_next_legal_one():
+    """Tasks 0 to 3, padding 4 and the no-op 5: from 4 the next legal one is 0 at first, then, with 0 taken, 1."""
+    env = mrta_v0.parallel_env(scenario=square(), max_tasks=5, on_illegal="replace")
+    env.reset()
+    env.step({"robot_0": 4, "robot_1": 4, "robot_2": 2})  # both are given task 0; robot_0 gets it, robot_1 none
+    assert env.mission.routes == [[0], [], [2]]
+    env.step({"robot_0": 3, "robot_1": 5, "robot_2": 0})  # those under way have only their no-op
+    assert env.mission.routes == [[0], [1], [2]]
+    _, _, terminations, _, _ = env.step({"robot_0": 0})  # back at time 1; from 0 the next is 3
+    assert env.mission.routes == [[0, 3], [1], [2]]
+    assert all(terminations.values())
+
+
 def test_of_those_who_choose_the_same_task_the_lowest_index_gets_it():
     env = mrta_v0.parallel_env(scenario=square(), max_tasks=5)
     env.reset()

@@ -96,6 +96,13 @@ def test_the_aec_loop_names_who_chose_what_it_may_not() -> None:
         run_in_environment(Stubborn(), scenario)
 
 
+def test_a_policy_has_the_form_of_observation_that_it_asks_for() -> None:
+    """The random policy looks at the mask alone: the same draws, whatever else it is shown."""
+    for scenario in seeded_scenarios(seed=0, count=5):
+        tables = run_in_environment(RandomPolicy(1), scenario)
+        assert run_in_environment(RandomPolicy(1), scenario, observation="masked").routes == tables.routes
+
+
 @pytest.mark.parametrize("rule", ["feasible", "active", "unvisited"])
 def test_plans_agree_with_a_loop_on_the_bare_mission(rule: str) -> None:
     for scenario in seeded_scenarios(5, 60):

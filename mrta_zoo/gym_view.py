@@ -1,0 +1,127 @@
+"""The mission as a single-agent Gymnasium environment: whichever robot is to act, one agent acts for it.
+
+For libraries that know no agents (Stable-Baselines3, sb3-contrib's MaskablePPO, Tianshou, CleanRL): one policy shared
+by all robots, which sees in each step what the acting robot sees.
+
+>>> from mrta_zoo.gym_view import ActingRobotEnv
+>>> env = ActingRobotEnv(reward="completion", observation="masked")
+>>> observation, info = env.reset(seed=1)
+>>> done = False
+>>> while not done:
+...     action = env.action_space.sample(env.action_masks().astype("int8"))
+...     observation, reward, done, _, info = env.step(action)
+"""
+
+from __future__ import annotations
+
+from typing import Any, get_args
+
+import gymnasium
+import numpy as np
+import numpy.typing as npt
+
+from mrta_zoo.bounds import as_finite
+from mrta_zoo.errors import ActionError, ConfigError
+from mrta_zoo.mission import Mission
+from mrta_zoo.mrta_v0 import raw_env
+from mrta_zoo.render import RENDER_MODES
+from mrta_zoo.settings import Illegal, one_of
+from mrta_zoo.world import next_legal
+
+Step = tuple[Any, float, bool, bool, dict[str, Any]]
+
+
+class ActingRobotEnv(gymnasium.Env[Any, Any]):
+    """One agent that acts for each robot when its turn comes. Can be pickled and deep-copied at any moment.
+
+    Observations, actions and infos are the acting robot's, as in `mrta_v0`; infos have its index besides, as
+    ``robot``. The reward of a step is the mean of all robots' rewards: with a team reward what each robot gets. After
+    the last step the observation is that of ``robot_0``.
+
+    Where no robot can do anything from the start, any action ends the episode, with the reward of a mission that has
+    ended.
+
+    Args:
+        on_illegal: what an action does that the mask forbids: ``"terminate"`` the episode, ``"raise"`` an error, or
+            ``"replace"``: stand for the next that the mask allows, for learners that know no masks.
+        illegal_reward: reward of a step that so ends the episode.
+        **options: see `mrta_zoo.settings.Settings`; without ``staggered``, for there is one agent to terminate.
+
+    Raises:
+        ConfigError: if an option cannot be used.
+    """
+
+    metadata = {"render_modes": list(RENDER_MODES), "render_fps": 4}  # noqa: RUF012  (as in Gymnasium's own class)
+
+    def __init__(self, *, on_illegal: Illegal = "terminate", illegal_reward: float = -1.0, **options: Any) -> None:
+        one_of("on_illegal", on_illegal, get_args(Illegal))
+        self._aec = raw_env(**options)
+        if self._aec.settings.staggered:
+            raise ConfigError("staggered is True; expected False, for one agent acts for all robots to the end")
+        self.on_illegal = on_illegal
+        self.illegal_reward = as_finite("illegal_reward", illegal_reward)
+        self.render_mode = self._aec.render_mode
+        first = self._aec.possible_agents[0]
+        self.observation_space = self._aec.observation_space(first)
+        self.action_space = self._aec.action_space(first)
+        self._over = True
+
+    @property
+    def mission(self) -> Mission:
+        """The mission under way."""
+        return self._aec.mission
+
+    @property
+    def robot(self) -> int:
+        """Index of the robot to act."""
+        return self._aec.possible_agents.index(self._aec.agent_selection)
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
+        """Start an episode; arguments and errors as in the AEC form."""
+        super().reset(seed=seed)
+        self._aec.reset(seed, options)
+        self._over = False
+        return self._seen()
+
+    def step(self, action: Any) -> Step:
+        """Let the acting robot take a task.
+
+        Raises:
+            ActionError: if `action` is outside the action space, the episode is over, or the mask forbids it and
+                `on_illegal` is "raise".
+        """
+        if self._over:
+            raise ActionError(f"the episode is over and takes no action ({action!r}); call reset() first")
+        if not self.mission.done:  # else nothing could be done from the start
+            try:
+                self._aec.step(action)
+            except ActionError:  # and nothing has changed
+                outside = isinstance(action, bool) or not self.action_space.contains(action)
+                if outside or self.on_illegal == "raise":
+                    raise
+                if self.on_illegal == "terminate":
+                    self._over = True
+                    observation, info = self._seen()
+                    return observation, self.illegal_reward, True, False, info
+                self._aec.step(next_legal(self.action_masks(), int(action)))
+        self._over = self.mission.done
+        observation, info = self._seen()
+        rewards = self._aec.rewards.values()
+        return observation, sum(rewards) / len(rewards), self._over, False, info
+
+    def action_masks(self) -> npt.NDArray[np.bool_]:
+        """(max_tasks,) bool, true where the acting robot may choose; all true where the mission is over.
+
+        Under this name sb3-contrib's MaskablePPO asks for it, also through vector environments.
+        """
+        mask: npt.NDArray[np.bool_] = self._aec.infos[self._aec.agent_selection]["action_mask"].astype(bool)
+        return np.ones_like(mask) if self.mission.done else mask
+
+    def render(self) -> Any:
+        """The mission as text or picture, by `render_mode`."""
+        return self._aec.render()
+
+    def _seen(self) -> tuple[Any, dict[str, Any]]:
+        agent = self._aec.agent_selection
+        info = {name: np.copy(of) if isinstance(of, np.ndarray) else of for name, of in self._aec.infos[agent].items()}
+        return self._aec.observe(agent), {**info, "robot": self.robot}

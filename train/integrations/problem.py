@@ -1,0 +1,88 @@
+"""The small problem that every integration learns, and how well a policy does on it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import tyro
+
+from mrta_zoo.plan import Plan
+from mrta_zoo.policies.aec_loop import run_in_environment
+from mrta_zoo.policies.heuristics import NearestPolicy, RandomPolicy
+from mrta_zoo.policies.protocol import Policy
+from mrta_zoo.scenario import Scenario
+from mrta_zoo.settings import ObservationForm
+from mrta_zoo.verify import verify
+
+TASKS, ROBOTS = 10, 2
+UNSEEN = 1_000_000
+"""Seed of the first scenario that policies are judged on; training draws its own from generators seeded lower."""
+
+Planner = Callable[[Scenario], Plan]
+
+
+@dataclass(frozen=True, slots=True)
+class Site:
+    """The same 10 tasks every day; 2 robots, of other capacities every day, begin it anywhere.
+
+    Random legal choices complete about 53 % of them, the nearest task 73 %, and local search some 83 %.
+
+    Attributes:
+        tasks: least and greatest number of tasks.
+        robots: likewise of robots.
+    """
+
+    tasks: tuple[int, int] = (TASKS, TASKS)
+    robots: tuple[int, int] = (ROBOTS, ROBOTS)
+
+    def __call__(self, rng: np.random.Generator, name: str = "site") -> Scenario:
+        """Draw one day."""
+        site = np.random.default_rng(1)
+        return Scenario(
+            task_xy=site.uniform(0, 100, (TASKS, 2)),
+            deadline=site.uniform(20, 200, TASKS),
+            workload=site.uniform(5, 25, TASKS),
+            robot_xy=rng.uniform(0, 100, (ROBOTS, 2)),
+            capacity=rng.uniform(1, 3, ROBOTS),
+            map_size=(100.0, 100.0),
+            name=name,
+        )
+
+
+def options(observation: ObservationForm) -> dict[str, Any]:
+    """What to make the environment with, in any of its forms: ``mrta_v0.env(**options("flat"))``."""
+    return {"generator": Site(), "reward": "completion", "observation": observation}
+
+
+def in_aec_loop(policy: Policy) -> Planner:
+    """Plans that a policy makes in the environment, in the form of observation that it asks for, if it does."""
+    form: ObservationForm = getattr(policy, "observation", "dict")
+    return lambda scenario: run_in_environment(policy, scenario, observation=form)
+
+
+def completions(plan: Planner, episodes: int = 200) -> npt.NDArray[np.float64]:
+    """(episodes,) share of the tasks completed in each of so many unseen scenarios, by the verifier."""
+    unseen = (Site()(np.random.default_rng(UNSEEN + episode)) for episode in range(episodes))
+    return np.array([verify(scenario, plan(scenario)).completed / TASKS for scenario in unseen])
+
+
+def show(train: Callable[..., Any]) -> None:
+    """Command line of an integration: train, with the function's arguments as flags, and print what came of it."""
+    begun = time.perf_counter()
+    trained = tyro.cli(train)
+    took = time.perf_counter() - begun
+    planners = {
+        "random": in_aec_loop(RandomPolicy()),
+        "nearest": in_aec_loop(NearestPolicy()),
+        "trained": trained.plan if hasattr(trained, "plan") else in_aec_loop(trained),
+    }
+    for name, plan in planners.items():
+        share = completions(plan)
+        error = share.std(ddof=1) / np.sqrt(len(share))
+        print(f"{name:8} {100 * share.mean():5.1f} % completed (standard error {100 * error:.1f})")
+    print(f"trained in {took:.0f} s ({time.process_time():.0f} s of CPU time in all)")
