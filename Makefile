@@ -6,13 +6,18 @@ BIN := $(VENV)/bin
 INSTALLED := $(VENV)/installed
 INTEGRATIONS := .venv-integrations
 
-.PHONY: demo test test-integrations lint wheel-test benchmark clean
+.PHONY: demo test test-browser test-integrations lint wheel-test benchmark clean
 
 demo: $(INSTALLED)
 	$(BIN)/mrta-zoo demo
 
 test: $(INSTALLED)
 	$(BIN)/python -m pytest -n 2
+
+# The replay page in headless Chromium, which the system must have; without it these tests are skipped.
+test-browser: $(INSTALLED)
+	$(BIN)/pip install --quiet --constraint constraints.txt --editable ".[browser]"
+	$(BIN)/python -m pytest -m browser -rs tests/browser
 
 # RLlib, TorchRL, SB3, SuperSuit and Tianshou learn a small problem each, in an environment of their own.
 test-integrations: $(INTEGRATIONS)/installed

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Annotated
 
@@ -68,15 +68,7 @@ class PlanningFlags:
 
     def solver(self, method: str) -> Solver:
         """The method, made with these flags."""
-        return make_solver(
-            method,
-            seed=self.seed,
-            decode=self.decode,
-            samples=self.samples,
-            budget=self.budget,
-            mask_rule=self.mask_rule,
-            threads=self.threads,
-        )
+        return make_solver(method, **asdict(self))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

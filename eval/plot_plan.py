@@ -14,8 +14,9 @@ import numpy as np
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.extras import require
 from mrta_zoo.io.atomic import replacing
+from mrta_zoo.palette import FAINT, INK, robot_colour
 from mrta_zoo.plan import Plan
-from mrta_zoo.render.style import FAINT, INK, plain
+from mrta_zoo.render.style import plain
 from mrta_zoo.scenario import FloatArray, Scenario
 from mrta_zoo.verify import Score, verify
 
@@ -30,10 +31,6 @@ try:
 except ImportError:
     require("plot", "a picture")
     raise
-
-ROBOT_COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#882255", "#4D4D4D")
-"""One for each robot, from the start again after the last. Okabe and Ito's, which colour-blind people can tell apart
-(without yellow and black, with wine and grey); robots are numbered in the picture all the same."""
 
 LATE = "#000000"
 HEIGHT_PER_ROBOT, LEAST_HEIGHT, MOST_HEIGHT = 0.4, 6.4, 30.0
@@ -117,12 +114,12 @@ def _draw_map(axes: Any, scenario: Scenario, plan: Plan, score: Score) -> None:
         tasks = np.array(route, dtype=np.intp)
         taken[tasks] = True
         way = np.vstack((scenario.robot_xy[robot], scenario.task_xy[tasks]))
-        _draw_way(axes, way, _colour(robot), arrows=numbered)
+        _draw_way(axes, way, robot_colour(robot), arrows=numbered)
         completed = np.array([visit.completed for visit in score.schedule[robot]], dtype=np.bool_)
         axes.scatter(
             *scenario.task_xy[tasks[completed]].T,
             s=size,
-            c=_colour(robot),
+            c=robot_colour(robot),
             edgecolors="white",
             linewidths=0.8,
             zorder=4,
@@ -141,7 +138,7 @@ def _draw_map(axes: Any, scenario: Scenario, plan: Plan, score: Score) -> None:
         for robot, (x, y) in enumerate(scenario.robot_xy):
             axes.text(
                 x, y, str(robot), fontsize=8, fontweight="bold", color="white", ha="center", va="center_baseline",
-                zorder=9, bbox={"boxstyle": "square,pad=0.3", "facecolor": _colour(robot), "edgecolor": "white"},
+                zorder=9, bbox={"boxstyle": "square,pad=0.3", "facecolor": robot_colour(robot), "edgecolor": "white"},
             )  # fmt: skip
     marks = [
         Line2D([], [], marker="s", color="white", markerfacecolor=FAINT, markersize=9, label="start of a robot"),
@@ -179,7 +176,7 @@ def _draw_time(axes: Any, scenario: Scenario, score: Score) -> None:
     axes.grid(axis="y", visible=False)
     numbered = m <= 20  # more rows leave no room for text in the bars
     for robot, visits in enumerate(score.schedule):
-        colour = _colour(robot)
+        colour = robot_colour(robot)
         if not visits:
             continue
         arrival = np.array([visit.arrival for visit in visits])
@@ -209,7 +206,7 @@ def _draw_time(axes: Any, scenario: Scenario, score: Score) -> None:
     if m <= MOST_NUMBERED:
         axes.set_yticks(range(m), [f"robot {robot}\n{_load(score, robot)}" for robot in range(m)])
         for robot, label in enumerate(axes.get_yticklabels()):
-            label.set(color=_colour(robot), fontweight="bold", fontsize=9 if m <= 20 else 6)
+            label.set(color=robot_colour(robot), fontweight="bold", fontsize=9 if m <= 20 else 6)
     _legend_below(
         axes,
         [
@@ -242,7 +239,3 @@ def _legend_below(axes: Any, handles: list[Any]) -> None:
         handles=handles, loc="upper center", bbox_to_anchor=(0.5, below), ncols=len(handles), frameon=False, fontsize=9,
         labelcolor=INK, handletextpad=0.4, columnspacing=1.4,
     )  # fmt: skip
-
-
-def _colour(robot: int) -> str:
-    return ROBOT_COLOURS[robot % len(ROBOT_COLOURS)]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+
+from mrta_zoo.html import table
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,3 +34,9 @@ class Row:
     distance: float
     makespan: float
     seconds: float
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows."""
+        values = ((each.name, getattr(self, each.name)) for each in fields(self))
+        rows = [(name, f"{value:.4g}" if isinstance(value, float) else value) for name, value in values]
+        return table(f"{self.method} on {self.case}", ("", ""), rows)

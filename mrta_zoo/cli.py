@@ -38,6 +38,25 @@ def _generate(argv: list[str]) -> None:
     generate_command(argv)
 
 
+def _step(argv: list[str]) -> None:
+    from mrta_zoo.eval.step import step_command
+
+    step_command(argv)
+
+
+def _compare(argv: list[str]) -> None:
+    from mrta_zoo.eval.compare import compare_command
+
+    compare_command(argv)
+
+
+def _replay(argv: list[str]) -> None:
+    require("replay", "the page")
+    from mrta_zoo.eval.replay import replay_command
+
+    replay_command(argv)
+
+
 def _train(argv: list[str]) -> None:
     require("torch", "training")
     from mrta_zoo.train.cli import train_command
@@ -67,6 +86,14 @@ def _ablate(argv: list[str]) -> None:
     ablate_command(argv)
 
 
+def _sharing(argv: list[str]) -> None:
+    require("torch", "training")
+    require("report", "the report")
+    from mrta_zoo.eval.sharing.command import sharing_command
+
+    sharing_command(argv)
+
+
 def _demo(argv: list[str]) -> None:
     from mrta_zoo.eval.commands import demo_command
 
@@ -76,11 +103,15 @@ def _demo(argv: list[str]) -> None:
 COMMANDS: dict[str, tuple[str, Command]] = {
     "solve": ("plan one mission: who does which task when", _solve),
     "eval": ("compare methods on a folder of cases, or on the built-in suite", _eval),
+    "step": ("go through an episode one decision at a time, and choose otherwise", _step),
+    "compare": ("find where two methods part on a mission, and what it costs", _compare),
     "generate": ("draw random scenarios into a folder of cases", _generate),
+    "replay": ("make a page that replays an episode in a browser, or two side by side", _replay),
     "train": ("train a policy by REINFORCE", _train),
     "reproduce": ("run the experiments of the CapAM paper and write a report", _reproduce),
     "converge": ("measure plan quality against planning time, and draw it", _converge),
     "ablate": ("train variants that differ in one thing each, and compare them", _ablate),
+    "sharing": ("train one policy for all robots, one by kind and one for each, and compare them", _sharing),
     "demo": ("see it all at work, in a few minutes", _demo),
 }
 """Each command with what `mrta-zoo --help` says of it. To add one, give it an entry."""

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from base64 import b64encode
+from html import escape
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -9,7 +12,7 @@ from gymnasium import spaces
 
 from mrta_zoo.mission import Mission
 from mrta_zoo.observation import FloatTable
-from mrta_zoo.render import render
+from mrta_zoo.render import Viewer, describe, headline
 from mrta_zoo.settings import Settings
 from mrta_zoo.world import World
 
@@ -27,6 +30,7 @@ class EnvBase:
         self.settings = settings
         self._world = World(settings, num_actions)
         self.render_mode = settings.render_mode
+        self._viewer = Viewer(settings.render_mode)
         self.possible_agents = list(self._world.names)
         self.action_spaces = dict(self._world.action_spaces)
         self.observation_spaces = dict.fromkeys(self.possible_agents, self._world.observation_space)
@@ -52,8 +56,21 @@ class EnvBase:
         return self._world.state()
 
     def render(self) -> np.ndarray | str | None:
-        """The mission as text or picture, by `render_mode`."""
-        return render(self.mission, self.render_mode)
+        """The mission as text or picture, or shown in a window, by `render_mode`; see `render.Viewer.render`."""
+        return self._viewer.render(self.mission)
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the mission as a picture, or as text if pygame is not installed."""
+        if not self._world.agents:
+            return f"<pre>{escape(f'{self}: no mission yet; call reset()')}</pre>"
+        if find_spec("pygame") is None:
+            return f"<pre>{escape(describe(self.mission))}</pre>"
+        from mrta_zoo.render.canvas import as_png  # pygame is heavy and optional
+        from mrta_zoo.render.picture import draw
+
+        png = b64encode(as_png(draw(self.mission))).decode()
+        return f'<img width="800" alt="{escape(headline(self.mission))}" src="data:image/png;base64,{png}">'
 
     def close(self) -> None:
-        """Nothing to close."""
+        """Close the window of render mode ``"human"``, if it is open."""
+        self._viewer.close()

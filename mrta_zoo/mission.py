@@ -54,7 +54,7 @@ class Mission:
         position: (M, 2) where each robot is, or is heading for.
         routes: for each robot the tasks it has taken, in order.
         heading: for each robot the task it is on, or -1 if it has none under way.
-        retired: for each robot whether it was free and found nothing left to choose.
+        retired: for each robot whether it was free and found nothing left to choose, or stayed.
         taken_by: (N,) the robot that took each task, or -1.
         finish: (N,) when each taken task is finished; NaN for the others.
         status: (N,) int8 `rules.Status` of each task at `time`.
@@ -128,6 +128,22 @@ class Mission:
             ActionError: if the mission is over or the robot may not choose this task.
         """
         self.take(self.actor, task)
+        return self.advance()
+
+    def stay(self) -> list[Finished]:
+        """Let the acting robot retire although it may choose, and move the clock on to the next actor.
+
+        Agents of the environment cannot do this; a plan can, when it ends a robot's route.
+
+        Returns:
+            What was finished on the way, as `assign` does.
+
+        Raises:
+            ActionError: if the mission is over.
+        """
+        if self.actor < 0:
+            raise ActionError("a robot was to stay, but the mission is over: every robot is retired")
+        self.retired[self.actor] = True
         return self.advance()
 
     def take(self, robot: int, task: int) -> None:

@@ -107,11 +107,15 @@ Other forms
 
 Rendering
 ---------
-``"ansi"``: text; ``"human"``: prints it after each step; ``"rgb_array"``: a picture (needs ``mrta_zoo[plot]``).
+``"ansi"``: text. ``"rgb_array"``: a (720, 1040, 3) uint8 picture: the map with tasks by status and time left, the
+robots where they are at this moment with their trails, dashed lines to where they are heading, and what each does.
+``"human"``: the same in a window, after the reset and each step; `close` closes it, and if its user does, the episode
+goes on without. Both need ``mrta_zoo[render]`` (pygame), the window a display, too. PettingZoo's ``RecordVideo`` makes
+videos of ``"rgb_array"`` (with ``mrta_zoo[video]``).
 
 Version history
 ---------------
-* v0: first release (0.1.0)
+* v0: first release (0.1.0). Before it, ``"human"`` printed text instead of opening a window.
 """
 
 from __future__ import annotations
@@ -124,7 +128,7 @@ from mrta_zoo.bounds import as_finite
 from mrta_zoo.env_base import EnvBase
 from mrta_zoo.errors import ActionError
 from mrta_zoo.parallel import ParallelMrtaEnv
-from mrta_zoo.render import RENDER_MODES
+from mrta_zoo.render import RENDER_FPS, RENDER_MODES
 from mrta_zoo.settings import Settings
 from mrta_zoo.wrappers import ActionSpaceWrapper, IllegalActionWrapper, OrderWrapper
 
@@ -173,7 +177,7 @@ class raw_env(EnvBase, AECEnv[str, Any, Any]):  # noqa: N801  (PettingZoo's name
     metadata: ClassVar[dict[str, Any]] = {
         "name": "mrta_v0",
         "render_modes": list(RENDER_MODES),
-        "render_fps": 4,
+        "render_fps": RENDER_FPS,
         "is_parallelizable": False,  # PettingZoo's conversion asks for cyclic turns
     }
 

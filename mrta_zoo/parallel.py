@@ -35,7 +35,7 @@ from pettingzoo.utils.env_logger import EnvLogger
 from mrta_zoo.bounds import as_finite
 from mrta_zoo.env_base import EnvBase
 from mrta_zoo.errors import ActionError
-from mrta_zoo.render import RENDER_MODES
+from mrta_zoo.render import RENDER_FPS, RENDER_MODES
 from mrta_zoo.settings import Illegal, Settings, one_of
 from mrta_zoo.world import Info, next_legal
 
@@ -57,7 +57,7 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
     metadata: ClassVar[dict[str, Any]] = {
         "name": "mrta_v0",
         "render_modes": list(RENDER_MODES),
-        "render_fps": 4,
+        "render_fps": RENDER_FPS,
     }
 
     def __init__(self, *, on_illegal: Illegal = "terminate", illegal_reward: float = -1.0, **options: Any) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from mrta_zoo.errors import ScenarioError
+from mrta_zoo.html import map_of, table
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -118,6 +119,20 @@ class Scenario:
 
     def __repr__(self) -> str:
         return f"Scenario({self.name!r}, {self.num_tasks} tasks, {self.num_robots} robots)"
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the ranges of what it holds, and the map."""
+        rows = [
+            (what, f"{values.min():g}", f"{values.mean():.4g}", f"{values.max():g}")
+            for what, values in (
+                ("deadline", self.deadline), ("workload", self.workload),
+                ("capacity", self.capacity), ("speed", self.speed),
+            )
+        ]  # fmt: skip
+        width, height = self.map_size
+        title = f"{self.name}: {self.num_tasks} tasks, {self.num_robots} robots, map {width:g} by {height:g}"
+        picture = map_of(self.map_size, self.task_xy.tolist(), self.deadline.tolist(), self.robot_xy.tolist())
+        return table(title, ("", "least", "mean", "most"), rows) + picture
 
 
 def _frozen(values: npt.ArrayLike, attribute: str) -> FloatArray:

@@ -40,8 +40,8 @@ class Settings:
         observation: ``"dict"`` of tables with the mask, ``"masked"``: one vector with the mask, or ``"flat"``: the
             vector alone, the mask in ``infos``.
         staggered: whether a robot terminates as soon as it retires, instead of all together at the end.
-        render_mode: what `render` gives: None, ``"ansi"`` (text), ``"human"`` (prints it at each step), or
-            ``"rgb_array"`` (a picture; needs ``mrta_zoo[plot]``).
+        render_mode: what `render` gives: None, ``"ansi"`` (text), ``"rgb_array"`` (a picture), or ``"human"`` (shows
+            the picture in a window at each step); the last two need ``mrta_zoo[render]``.
 
     Raises:
         ConfigError: if an option cannot be used.

@@ -12,6 +12,7 @@ import operator
 from dataclasses import dataclass
 
 from mrta_zoo.errors import PlanError
+from mrta_zoo.html import table
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
 
@@ -58,6 +59,19 @@ class Score:
     distance: float
     makespan: float
     schedule: tuple[tuple[Visit, ...], ...]
+
+    def _repr_html_(self) -> str:
+        """What a notebook shows: the scores, and what each robot did."""
+        title = (
+            f"{self.completed} of {self.tasks} tasks completed ({100 * self.completion:.1f} %), cost {self.cost:.3f}, "
+            f"distance {self.distance:.1f}, makespan {self.makespan:.1f}"
+        )
+        rows = [
+            (robot, f"{sum(visit.completed for visit in visits)} of {len(visits)}",
+             visits[-1].finish if visits else "-", " → ".join(str(visit.task) for visit in visits) or "-")
+            for robot, visits in enumerate(self.schedule)
+        ]  # fmt: skip
+        return table(title, ("robot", "completed", "last finish", "tasks"), rows)
 
 
 def verify(scenario: Scenario, plan: Plan) -> Score:

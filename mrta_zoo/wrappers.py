@@ -43,6 +43,10 @@ class _DirectBooks(BaseWrapper[str, Any, Any]):
         self._innermost = env.unwrapped
         super().__init__(env, **options)
 
+    def _repr_html_(self) -> str:
+        html: str = self._innermost._repr_html_()  # PettingZoo's wrapper passes on no name with an underscore
+        return html
+
 
 class IllegalActionWrapper(_DirectBooks, TerminateIllegalWrapper[str, Any, Any]):
     """PettingZoo's `TerminateIllegalWrapper`: an illegal action ends the episode for everyone."""

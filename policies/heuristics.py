@@ -44,6 +44,8 @@ class RandomPolicy:
 class NearestPolicy:
     """The nearest task that may be chosen; of equally near ones that of the lowest index."""
 
+    memoryless = True
+
     def act(self, observation: Observation, agent: str = "") -> int:
         """The task to take.
 
@@ -55,6 +57,8 @@ class NearestPolicy:
 
 class EarliestDeadlinePolicy:
     """The task with the earliest deadline; of equal ones the nearest, then that of the lowest index."""
+
+    memoryless = True
 
     def act(self, observation: Observation, agent: str = "") -> int:
         """The task to take.

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, get_args
 
@@ -21,7 +22,7 @@ from mrta_zoo.policies.decoding import Decoding, best_plan
 from mrta_zoo.policies.options import Decode, SolverOptions
 from mrta_zoo.policies.pretrained import pretrained_names, pretrained_path
 from mrta_zoo.policies.rollout import NOT_FINITE, OutOfTimeError, roll_out
-from mrta_zoo.policies.sharing import Network
+from mrta_zoo.policies.sharing import IndependentNetworks, Network
 from mrta_zoo.policies.weights import PolicyInfo, load_weights
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
@@ -43,7 +44,7 @@ class Decision:
 
 
 class NeuralPolicy:
-    """Decides for every robot with one network, or with each robot's own. Implements `Policy` and `Solver`.
+    """Decides for every robot, with one network or several (`policies.sharing`). Implements `Policy` and `Solver`.
 
     Args:
         network: scores the tasks.
@@ -69,6 +70,40 @@ class NeuralPolicy:
         self._generator = torch.Generator().manual_seed(seed)
         self._encoded_for: object = None
         self._encoding: Any = None
+        self._of_agent: dict[str, NeuralPolicy] = {}
+
+    def for_agent(self, agent: str) -> NeuralPolicy:
+        """The policy that decides for one robot, the same object at each call.
+
+        Independent networks give a policy with that robot's network alone, which answers for whomever it is asked. A
+        shared policy is this one; so is one by capacity, which reads in each observation what kind of robot acts.
+
+        Raises:
+            ConfigError: if `agent` is no robot's name, or there is no network for it.
+        """
+        number = agent.removeprefix("robot_")
+        if number == agent or not number.isdecimal():
+            raise ConfigError(f"there is no agent {agent!r}; expected robot_0, robot_1, …")
+        if not isinstance(self.network, IndependentNetworks):
+            return self
+        if agent not in self._of_agent:
+            alone = replace(self.info, sharing="shared", robots=1)
+            policy = NeuralPolicy(self.network.of_robot(int(number)), alone, self.name, self.decode)
+            policy._generator = self._generator  # one stream of draws, however many robots
+            self._of_agent[agent] = policy
+        return self._of_agent[agent]
+
+    @property
+    def memoryless(self) -> bool:
+        """Whether what it does depends on the observation alone, and not on what it was asked before."""
+        return self.decode != "sample"
+
+    def fork(self) -> NeuralPolicy:
+        """A policy that goes on as this one would, with draws of its own, on the same network."""
+        twin = copy.copy(self)
+        twin._generator = torch.Generator()
+        twin._generator.set_state(self._generator.get_state())
+        return twin
 
     def act(self, observation: Observation, agent: str = "") -> int:
         """The task to take. `agent` is not needed: the observation says whose it is."""

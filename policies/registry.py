@@ -50,14 +50,20 @@ class PolicySolver:
         make_policy: gives the policy for one mission.
         options: of which the mask rule counts.
         method: what plans are signed with.
+
+    Attributes:
+        make_policy: as given.
+        mask_rule: what robots may choose.
+        method: as given.
     """
 
     def __init__(self, make_policy: Callable[[], Policy], options: SolverOptions, method: str) -> None:
-        self._make_policy, self._mask_rule, self._method = make_policy, options.mask_rule or "feasible", method
+        self.make_policy, self.method = make_policy, method
+        self.mask_rule: MaskRule = options.mask_rule or "feasible"
 
     def solve(self, scenario: Scenario) -> Plan:
         """A plan for `scenario`."""
-        return run_in_environment(self._make_policy(), scenario, self._mask_rule, self._method)
+        return run_in_environment(self.make_policy(), scenario, self.mask_rule, self.method)
 
 
 class LearnedSolver:
@@ -69,11 +75,11 @@ class LearnedSolver:
     """
 
     def __init__(self, policy: NeuralPolicy, options: SolverOptions) -> None:
-        self.policy, self._options = policy, options
+        self.policy, self.options = policy, options
 
     def solve(self, scenario: Scenario) -> Plan:
         """A plan for `scenario`."""
-        options = self._options
+        options = self.options
         return self.policy.solve(
             scenario,
             decode=options.decode or "greedy",
@@ -93,7 +99,7 @@ class LearnedSolver:
 
         None if not even the first greedy mission is finished in time.
         """
-        options = self._options
+        options = self.options
         return self.policy.solve_within(
             scenario,
             seconds,
@@ -105,7 +111,7 @@ class LearnedSolver:
 
     def warm_up(self, scenario: Scenario) -> None:
         """Plan once without a search: the first pass of a network is slower than those that follow."""
-        self.policy.solve(scenario, mask_rule=self._options.mask_rule)
+        self.policy.solve(scenario, mask_rule=self.options.mask_rule)
 
 
 def _ils(options: SolverOptions) -> Solver:

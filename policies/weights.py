@@ -18,7 +18,7 @@ from safetensors.torch import load_file, save
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.atomic import replacing
 from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.policies.sharing import Network, Sharing, build_network
+from mrta_zoo.policies.sharing import USUAL_KINDS, Network, Sharing, build_network
 from mrta_zoo.rules import MaskRule
 
 T = TypeVar("T")
@@ -30,8 +30,9 @@ class PolicyInfo:
 
     Attributes:
         network: architecture.
-        sharing: "shared" or "independent".
+        sharing: "shared", "independent" or "by-capacity".
         robots: number of networks, if independent.
+        kinds: of robots, if by capacity, as shares of the strongest robot's.
         mask_rule: the mask rule it was trained under.
         trained: how it was trained, for people to read.
         format: always "mrta_zoo.policy".
@@ -41,6 +42,7 @@ class PolicyInfo:
     network: NetworkConfig
     sharing: Sharing = "shared"
     robots: int = 1
+    kinds: tuple[float, ...] = USUAL_KINDS
     mask_rule: MaskRule = "feasible"
     trained: dict[str, Any] = field(default_factory=dict)
     format: Literal["mrta_zoo.policy"] = "mrta_zoo.policy"
@@ -64,7 +66,7 @@ def load_weights(path: Path) -> tuple[Network, PolicyInfo]:
     path = Path(path)
     info = read_json(path.with_suffix(".json"), PolicyInfo)
     tensors = read_tensors(path)
-    network = build_network(info.network, info.sharing, info.robots, seed=0)
+    network = build_network(info.network, info.sharing, info.robots, seed=0, kinds=info.kinds)
     load_state(network, tensors, path)
     return network.eval(), info
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import torch
 
+os.environ.setdefault("SDL_VIDEODRIVER", "dummy")  # windows that need no display
 torch.set_num_threads(1)  # at the tests' sizes more threads only get in each other's way
 
 # Numba's cache does not see that a function called from another file has changed.

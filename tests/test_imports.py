@@ -14,7 +14,17 @@ ROOT = Path(__file__).resolve().parent.parent
 
 # From the bottom up. A module may import its own layer and those before it; a package stands for its modules.
 LAYERS = (
-    ("what needs nothing of ours", ("mrta_zoo.errors", "mrta_zoo.registration", "mrta_zoo.bounds", "mrta_zoo.extras")),
+    (
+        "what needs nothing of ours",
+        (
+            "mrta_zoo.errors",
+            "mrta_zoo.registration",
+            "mrta_zoo.bounds",
+            "mrta_zoo.extras",
+            "mrta_zoo.palette",
+            "mrta_zoo.html",
+        ),
+    ),
     ("the problem", ("mrta_zoo", "mrta_zoo.scenario", "mrta_zoo.plan")),
     ("its rules", ("mrta_zoo.rules",)),
     (
@@ -24,6 +34,7 @@ LAYERS = (
             "mrta_zoo.batch",
             "mrta_zoo.objective",
             "mrta_zoo.verify",
+            "mrta_zoo.trace",
             "mrta_zoo.generators",
             "mrta_zoo.io",
             "mrta_zoo.suite",
@@ -46,6 +57,7 @@ LAYERS = (
         ),
     ),
     ("policies and solvers", ("mrta_zoo.policies",)),
+    ("looking at episodes", ("mrta_zoo.debug", "mrta_zoo.replay")),
     ("training and evaluation", ("mrta_zoo.train", "mrta_zoo.eval")),
     ("the command line", ("mrta_zoo.cli", "mrta_zoo.__main__")),
 )
@@ -55,8 +67,8 @@ PACKAGES = {
     "train": "mrta_zoo.train",
     "eval": "mrta_zoo.eval",
 }
-VERIFY_MAY_IMPORT = {"mrta_zoo.scenario", "mrta_zoo.plan", "mrta_zoo.errors"}
-HEAVY = ("torch", "matplotlib", "scipy", "tyro", "rich")
+VERIFY_MAY_IMPORT = {"mrta_zoo.scenario", "mrta_zoo.plan", "mrta_zoo.errors", "mrta_zoo.html"}
+HEAVY = ("torch", "matplotlib", "scipy", "tyro", "rich", "pygame", "plotly")
 
 
 def modules() -> dict[str, Path]:

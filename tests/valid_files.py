@@ -22,3 +22,21 @@ robot,5,6,,,2,1
 """
 
 PLAN = '{\n  "format": "mrta_zoo.plan",\n  "version": 1,\n  "routes": [[0, 2], [1]]\n}'
+
+TRACE = """{
+  "format": "mrta_zoo.trace",
+  "version": 1,
+  "method": "hand",
+  "mask_rule": "feasible",
+  "map": {"width": 100, "height": 50},
+  "tasks": [
+    {"x": 3, "y": 4, "deadline": 20, "workload": 10},
+    {"x": 3, "y": 10, "deadline": 99, "workload": 2}
+  ],
+  "robots": [{"x": 0, "y": 0, "capacity": 2}],
+  "decisions": [
+    {"time": 0, "robot": 0, "task": 0, "probabilities": [[0, 0.75], [1, 0.25]]},
+    {"time": 10, "robot": 0, "task": null, "advice": 1}
+  ]
+}
+"""

@@ -64,22 +64,27 @@ def train(
     if run.update < config.imitation_updates:
         if plans is None:
             raise ConfigError("there is imitation to be done; name a folder of plans (--plans)")
-        run.set_plans(read_plans(config, plans, config.imitation_plans))
+        known = read_plans(config, plans, config.imitation_plans)
+        if len(known) < config.imitation_plans:
+            print(f"{out.name}: {plans} holds {len(known):,} plans, not {config.imitation_plans:,}", flush=True)
+            run.config = config = replace(config, imitation_plans=len(known))
+        run.set_plans(known)
     print(f"{out.name}: ready after {time.perf_counter() - begun:.1f} s on {run.device}", flush=True)
     last = saved = session = time.perf_counter()
     first_reinforce = None
+    start = max(run.update, config.imitation_updates)
     updates: list[Update] = []
     for event in run.run():
         now = time.perf_counter()
         if isinstance(event, Update):
             updates.append(event)
-            into = event.update - config.imitation_updates
+            into = event.update - start
             if fit and into == 15:
                 first_reinforce = now
             if fit and into == 75 and first_reinforce is not None:
                 left = seconds - (now - begun) - 12
                 more = int(left / ((now - first_reinforce) / 60 * 1.08))
-                run.config = config = replace(config, updates=into + max(more, 1))
+                run.config = config = replace(config, updates=start - config.imitation_updates + into + max(more, 1))
                 print(f"{out.name}: {config.updates} updates of REINFORCE", flush=True)
         else:
             mean = sum(update.loss for update in updates) / max(1, len(updates))

@@ -19,6 +19,7 @@ import os
 import shutil
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import torch
 
@@ -104,6 +105,18 @@ def saved_config(folder: Path) -> TrainConfig:
     return read_json(folder / "config.json", TrainConfig)
 
 
+def seconds_spent(folder: Path) -> float:
+    """Time spent training the run in `folder`, as of its last checkpoint.
+
+    Raises:
+        ConfigError: if there is no checkpoint, or it is damaged.
+    """
+    numbers = _checkpoints(folder)
+    if not numbers:
+        raise ConfigError(f"{folder} holds no checkpoint; expected the folder of a training run")
+    return read_json(folder / "checkpoints" / _name(numbers[-1]) / "state.json", RunState).seconds
+
+
 def save(folder: Path, run: Reinforce, seconds: float) -> None:
     """Write a checkpoint of the run, which was just validated, drop old ones, and keep the best policy."""
     final = folder / "checkpoints" / _name(run.update)
@@ -139,11 +152,21 @@ def policy_info(run: Reinforce, seconds: float) -> PolicyInfo:
         "validation_completion": last.completion,
         "validation_cost": last.cost,
     }
-    config = run.config
+    return info_of(run.config, trained)
+
+
+def info_of(config: TrainConfig, trained: dict[str, Any]) -> PolicyInfo:
+    """What belongs to the weights of a run.
+
+    Args:
+        config: the run's.
+        trained: how it went, for people to read.
+    """
     return PolicyInfo(
         network=config.network,
         sharing=config.sharing,
         robots=most_robots(config),
+        kinds=config.kinds,
         mask_rule=config.mask_rule,
         trained=trained,
     )

@@ -26,7 +26,8 @@ from mrta_zoo.train.reinforce import Reinforce, RunOptions, Update
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrainCommand:
-    """Train a policy by REINFORCE with one network for all robots (or one for each: --sharing independent).
+    """Train a policy by REINFORCE with one network for all robots, or one for each (--sharing independent), or one for
+    each kind of robots (--sharing by-capacity).
 
     Choose a preset, and change what you like with the flags below; their defaults are the preset's.
 

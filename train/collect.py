@@ -13,8 +13,10 @@ import torch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.records import write_records
 from mrta_zoo.policies.sharing import build_network
-from mrta_zoo.policies.weights import PolicyInfo, load_state, save_policy
+from mrta_zoo.policies.weights import load_state, save_policy
 from mrta_zoo.train.bare import read_config
+from mrta_zoo.train.checkpoint import info_of
+from mrta_zoo.train.distribution import most_robots
 from mrta_zoo.train.reinforce import Validation
 
 BARE = "bare"
@@ -38,7 +40,7 @@ def collect(folder: Path) -> None:
         raise ConfigError(f"{error.filename}: no such file; expected what mrta_zoo.train.bare leaves") from None
     except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
         raise ConfigError(f"{weights}: not what mrta_zoo.train.bare leaves ({error})") from None
-    network = build_network(config.network, config.sharing, config.max_robots, seed=0)
+    network = build_network(config.network, config.sharing, most_robots(config), seed=0, kinds=config.kinds)
     load_state(network, {name: torch.from_numpy(array) for name, array in arrays.items()}, weights)
     trained = {
         "config": asdict(config),
@@ -51,12 +53,5 @@ def collect(folder: Path) -> None:
         "validation_completion": history[-1].completion,
         "validation_cost": history[-1].cost,
     }
-    info = PolicyInfo(
-        network=config.network,
-        sharing=config.sharing,
-        robots=config.max_robots,
-        mask_rule=config.mask_rule,
-        trained=trained,
-    )
-    save_policy(folder / "policy.safetensors", network, info)
+    save_policy(folder / "policy.safetensors", network, info_of(config, trained))
     write_records(history, folder / "history.csv")

@@ -9,7 +9,7 @@ from typing import Literal, get_args
 from mrta_zoo.bounds import check_seed
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.policies.sharing import Sharing
+from mrta_zoo.policies.sharing import USUAL_KINDS, Sharing, check_kinds
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.train.precision import Precision
 
@@ -24,7 +24,10 @@ class TrainConfig:
 
     Attributes:
         network: architecture of the policy network.
-        sharing: one network for all robots ("shared"), or one for each ("independent").
+        sharing: one network for all robots ("shared"), one for each ("independent"), or one for each kind of robots
+            ("by-capacity").
+        kinds: of robots, if by capacity: capacities as shares of the strongest robot's in a team, ascending, the last
+            one 1.
         generator: distribution of the training scenarios: "taptc" (fitted to the benchmark), "uniform" (paper
             §IV-A), or "mixture" (both, see `mrta_zoo.train.distribution`).
         tasks: numbers of tasks; each update draws one of them.
@@ -66,6 +69,7 @@ class TrainConfig:
 
     network: NetworkConfig = field(default_factory=NetworkConfig)
     sharing: Sharing = "shared"
+    kinds: tuple[float, ...] = USUAL_KINDS
     generator: GeneratorName = "taptc"
     tasks: tuple[int, ...] = (100,)
     task_weights: tuple[float, ...] = ()
@@ -144,6 +148,7 @@ class TrainConfig:
         if not 0 <= self.entropy < math.inf:
             raise ConfigError(f"entropy is {self.entropy}; expected a number >= 0")
         check_seed(self.seed)
+        check_kinds(self.kinds)
         if self.normalise and self.scenarios * self.samples < 2:
             raise ConfigError("normalise compares the missions of an update; scenarios x samples is 1, expected >= 2")
         for name, names in (

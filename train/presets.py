@@ -29,13 +29,13 @@ BROAD = TrainConfig(
     seed=7,
 )
 
-# The paper's networks with the same budget each: 38,400 plans seen in imitation, then 268,800 episodes.
+# The paper's networks with the same budget each: 38,400 plans seen in imitation, then 201,600 episodes.
 PAPER_NETWORK = replace(
     BROAD,
     imitation_updates=600,
     imitation_batch=64,
     scenarios=12,
-    updates=2800,
+    updates=2100,
     epoch=100,
     learning_rate=4e-4,
     final_learning_rate=1e-5,
@@ -65,7 +65,7 @@ PRESETS: dict[str, TrainConfig] = {
         imitation_updates=700,
         imitation_batch=512,
         scenarios=128,
-        updates=432,
+        updates=1189,
         epoch=120,
         validation_scenarios=256,
         learning_rate=2e-4,

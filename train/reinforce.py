@@ -32,7 +32,7 @@ from mrta_zoo.train.distribution import draw_size, most_robots, training_generat
 from mrta_zoo.train.experts import ExpertPlan
 from mrta_zoo.train.graphed_rollout import GraphedRollout
 from mrta_zoo.train.imitation import PlanBatch, follow, turned
-from mrta_zoo.train.objective import OBJECTIVES
+from mrta_zoo.train.objective import OBJECTIVES, Objective
 from mrta_zoo.train.precision import Precision, autocast
 from mrta_zoo.train.scenarios import Feed
 
@@ -88,7 +88,11 @@ class Reinforce:
     """
 
     def __init__(
-        self, config: TrainConfig, generator: ScenarioGenerator | None = None, options: RunOptions | None = None
+        self,
+        config: TrainConfig,
+        generator: ScenarioGenerator | None = None,
+        options: RunOptions | None = None,
+        objective: Objective | None = None,
     ) -> None:
         """Start afresh.
 
@@ -96,16 +100,25 @@ class Reinforce:
             config: the run.
             generator: draws the scenarios; by default, as `config.generator` says.
             options: what makes it quicker.
+            objective: what to minimise, see `mrta_zoo.train.objective`; by default, as `config.objective` says.
 
         Raises:
-            ConfigError: if `config.initial` names no policy, or one of another architecture.
+            ConfigError: if `config.initial` names no policy, or one of another architecture; or if there is to be a
+                network for each kind of robots, and the configuration's generator draws any kind.
         """
         options = options or RunOptions()
         self.config = config
         self.device = _device(config.device)
         self.generator = generator
-        self.objective = OBJECTIVES[config.objective]
-        self.network: Network = build_network(config.network, config.sharing, most_robots(config), config.seed)
+        self.objective = objective or OBJECTIVES[config.objective]
+        if generator is None and config.sharing == "by-capacity" and config.generator != "taptc":
+            raise ConfigError(
+                f"sharing is 'by-capacity', a network for each of a few kinds of robots, and generator "
+                f"{config.generator!r} draws any capacity; expected generator taptc, or one of your own"
+            )
+        self.network: Network = build_network(
+            config.network, config.sharing, most_robots(config), config.seed, config.kinds
+        )
         if config.initial:
             self._start_from(config.initial)
         self.network.to(self.device)
@@ -120,7 +133,7 @@ class Reinforce:
         self.history: list[Validation] = []
         self._validation: ScenarioBatch | None = None
         self._feed = Feed(config, generator, options.workers if self.device.type == "cuda" else 0)
-        # An encoding of independent networks is not worth the care: they are for comparisons, not for speed.
+        # Encodings of several networks are not worth the care: they are for comparisons, not for speed.
         graphs = self.device.type == "cuda" and config.sharing == "shared"
         self._graphed = (
             GraphedRollout(self.network, config.samples, config.mask_rule, config.precision, self.device)
@@ -244,11 +257,14 @@ class Reinforce:
         from mrta_zoo.policies.weights import load_state
 
         policy, config = load_policy(initial), self.config
-        if (policy.info.network, policy.info.sharing) != (config.network, config.sharing):
+        info = policy.info
+        if (info.network, info.sharing) != (config.network, config.sharing):
             raise ConfigError(
-                f"initial is {initial!r}, which is {policy.info.sharing} {policy.info.network}; "
+                f"initial is {initial!r}, which is {info.sharing} {info.network}; "
                 f"the run is {config.sharing} {config.network}"
             )
+        if info.sharing == "by-capacity" and info.kinds != config.kinds:
+            raise ConfigError(f"initial is {initial!r}, for kinds {info.kinds}; the run is for kinds {config.kinds}")
         load_state(self.network, dict(policy.network.state_dict()), Path(initial))
 
     def set_plans(self, plans: Sequence[ExpertPlan]) -> None:

@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from mrta_zoo.eval.ablation.effects import Effect, effect_of, equal_weights
-from mrta_zoo.eval.ablation.held_out import ROBOTS
 from mrta_zoo.eval.ablation.questions import ENCODER, MOMENTS, Question
 from mrta_zoo.eval.ablation.study import Study
-from mrta_zoo.eval.ablation.variants import CAPAM
+from mrta_zoo.eval.ablation.variants import CAPAM, ROBOTS
 from mrta_zoo.eval.reproduce import wording
 from mrta_zoo.eval.statistics import SIGNIFICANT, holm
+from mrta_zoo.eval.training.effects import Effect, effect_of, equal_weights
 
 Verdict = Literal["supported", "not supported", "undecided"]
 

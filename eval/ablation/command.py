@@ -2,32 +2,25 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
-from rich.console import Console
 from tyro.conf import arg
 
-from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.ablation.held_out import ROBOTS, HeldOut
-from mrta_zoo.eval.ablation.pool import perform_all
 from mrta_zoo.eval.ablation.questions import QUESTIONS, choose, needed
 from mrta_zoo.eval.ablation.report import make_report
-from mrta_zoo.eval.ablation.study import Study, read_curves
-from mrta_zoo.eval.ablation.training import Job, rows_of
-from mrta_zoo.eval.ablation.variants import Budget, all_variants
-from mrta_zoo.eval.console import progress_bar, results_console
-from mrta_zoo.eval.experiment import make_manifest, open_experiment
+from mrta_zoo.eval.ablation.study import Study
+from mrta_zoo.eval.ablation.variants import ROBOTS, Budget, all_variants
+from mrta_zoo.eval.console import results_console
+from mrta_zoo.eval.experiment import make_manifest
 from mrta_zoo.eval.flags import names, parse
-from mrta_zoo.eval.machine import Session, this_session
 from mrta_zoo.eval.reproduce.report import write_report
-from mrta_zoo.eval.rows_file import RowsFile
-from mrta_zoo.eval.threads import cpu_threads
+from mrta_zoo.eval.training.held_out import HeldOut
+from mrta_zoo.eval.training.job import Job
+from mrta_zoo.eval.training.study import check_counts, perform_study, read_curves
 from mrta_zoo.io import Case
-from mrta_zoo.io.records import write_records
 
 USUAL = Budget()
 
@@ -73,10 +66,7 @@ def ablate_command(argv: Sequence[str]) -> None:
         MrtaError: if an option cannot be used, a file cannot be read or written, or training diverges.
     """
     command = parse(Ablate, argv, "ablate")
-    if command.seeds < 1:
-        raise ConfigError(f"seeds is {command.seeds}; expected a whole number >= 1")
-    if not 1 <= command.workers <= 1024:
-        raise ConfigError(f"workers is {command.workers}; expected a whole number from 1 to 1024")
+    check_counts(command.seeds, command.workers)
     questions = choose(names(command.only, "only", "questions", "encoder,moments"))
     budget = Budget(
         updates=command.updates,
@@ -85,7 +75,7 @@ def ablate_command(argv: Sequence[str]) -> None:
         samples=command.samples,
         tasks=command.tasks,
     )
-    held_out = HeldOut(command.tasks, command.held_out)
+    held_out = HeldOut(command.tasks, command.held_out, ROBOTS)
     evaluated = needed(questions)
     every = all_variants(budget)
     jobs = [
@@ -110,44 +100,18 @@ def ablate_command(argv: Sequence[str]) -> None:
         for scenario in held_out.scenarios(distribution, robots)
     ]
     manifest = make_manifest("ablate", settings, cases, [])
-    with cpu_threads(1):
-        open_experiment(command.out, manifest)
-        sessions = RowsFile(command.out / "sessions.csv", Session)
-        missing = [job for job in jobs if not job.rows_file.exists()]
-        if missing:
-            sessions.append(this_session(1))
-        train_all(jobs, missing, command.workers)
-    rows = [row for job in jobs for row in rows_of(job)]
-    write_records(rows, command.out / "rows.csv")
+    rows, sessions = perform_study(command.out, manifest, jobs, command.workers)
     study = Study(
         questions=questions,
         variants={name: every[name] for name in evaluated},
         budget=budget,
         seeds=command.seeds,
         rows=rows,
-        curves=read_curves({(job.variant, job.seed): job.folder for job in jobs}),
+        curves=read_curves(jobs),
     )
-    report = make_report(study, manifest, sessions.rows)
+    report = make_report(study, manifest, sessions)
     write_report(report, command.out)
     console = results_console()
     for point in report.summary:
         console.print(f"- {point}", soft_wrap=True)
     console.print(f"report written to {command.out / 'report.html'}", soft_wrap=True)
-
-
-def train_all(jobs: Sequence[Job], missing: Sequence[Job], workers: int) -> None:
-    """Do what is missing, with a bar if there is a terminal, and a line on standard error for each run that ends."""
-    console = Console(file=sys.stderr, markup=False, highlight=False, emoji=False)
-    done = {job.folder: 1.0 for job in jobs if job not in missing}
-    with progress_bar() as progress:
-        bar = progress.add_task("runs", total=len(jobs), completed=len(done))
-
-        def report(job: Job, share: float) -> None:
-            done[job.folder] = share
-            progress.update(bar, completed=sum(done.values()))
-            if share == 1:
-                finished = sum(each == 1 for each in done.values())
-                line = f"{job.variant}, seed {job.seed}: trained and compared ({finished} of {len(jobs)} runs)"
-                (progress.console if progress.console.is_terminal else console).print(line, soft_wrap=True)
-
-        perform_all(missing, workers, report)

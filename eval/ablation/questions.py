@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.ablation.held_out import Distribution
 from mrta_zoo.eval.ablation.variants import CAPAM, REFERENCE
+from mrta_zoo.eval.training.held_out import Distribution
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

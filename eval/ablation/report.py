@@ -7,18 +7,18 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from mrta_zoo import __version__
 from mrta_zoo.eval.ablation.claims import Claim, claims_of, gap_by_robots, verdicts
-from mrta_zoo.eval.ablation.effects import arrange, equal_weights, run_values
 from mrta_zoo.eval.ablation.figures import curves_data, draw_curves, draw_forest, forest_data
-from mrta_zoo.eval.ablation.held_out import ROBOTS
 from mrta_zoo.eval.ablation.questions import ENCODER
 from mrta_zoo.eval.ablation.study import HARDLY, Comparison, Study
+from mrta_zoo.eval.ablation.variants import ROBOTS
 from mrta_zoo.eval.experiment import Manifest
 from mrta_zoo.eval.machine import Session
 from mrta_zoo.eval.reproduce import wording
 from mrta_zoo.eval.reproduce.parts import Picture, Report, Section, Table
 from mrta_zoo.eval.statistics import LEVEL
+from mrta_zoo.eval.training.effects import arrange, equal_weights, run_values
+from mrta_zoo.eval.training.study import command_line, trained_on
 
 INTERVALS = (
     f"{100 * LEVEL:.0f} % intervals are Student’s, from the scatter of training runs (pooled over the variants of a "
@@ -222,15 +222,11 @@ def _curves(study: Study) -> Section:
 
 
 def _made(study: Study, manifest: Manifest, sessions: Sequence[Session]) -> tuple[tuple[str, str], ...]:
-    settings = manifest.settings
-    flags = [f"--only {','.join(settings['only'])}"] + [
-        f"--{name.replace('_', '-')} {settings[name]}"
-        for name in ("seeds", "updates", "paper_updates", "scenarios", "samples", "tasks", "held_out")
-    ]
     budget = study.budget
-    made = [
-        ("Command", f"mrta-zoo ablate --out DIR {' '.join(flags)}"),
-        ("Version", f"mrta_zoo {__version__}"),
+    return (
+        *command_line(
+            manifest, "only", "seeds", "updates", "paper_updates", "scenarios", "samples", "tasks", "held_out"
+        ),
         ("Seeds", f"0 to {study.seeds - 1}, of weights, training scenarios and samples"),
         (
             "Each run",
@@ -246,14 +242,5 @@ def _made(study: Study, manifest: Manifest, sessions: Sequence[Session]) -> tupl
             "Every plan was scored by the package’s verifier. A task counts as completed if its work is finished by "
             "its deadline. Policies decide under the mask rule that they were trained under.",
         ),
-    ]
-    for session in sessions:
-        load = "unknown" if session.load is None else f"{session.load:g}"
-        made.append(
-            (
-                f"Trained from {session.started}",
-                f"{session.processor}, {session.cores} cores usable, load {load} at the beginning, one torch thread a "
-                f"process, {session.system}; {session.libraries}",
-            )
-        )
-    return tuple(made)
+        *trained_on(sessions),
+    )

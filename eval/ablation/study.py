@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from statistics import fmean
 
-from mrta_zoo.eval.ablation.effects import Effect, Runs, arrange, effect_of, equal_weights
-from mrta_zoo.eval.ablation.held_out import ROBOTS
 from mrta_zoo.eval.ablation.questions import Question
-from mrta_zoo.eval.ablation.rows import AblationRow
-from mrta_zoo.eval.ablation.variants import Budget, Variant
-from mrta_zoo.eval.plot_history import LearningCurve, read_history
+from mrta_zoo.eval.ablation.variants import ROBOTS, Budget, Variant
+from mrta_zoo.eval.plot_history import LearningCurve
 from mrta_zoo.eval.statistics import SIGNIFICANT, holm
+from mrta_zoo.eval.training.effects import Effect, Runs, arrange, effect_of, equal_weights
+from mrta_zoo.eval.training.rows import RunRow
 
 HARDLY = 1.0
 """Percentage points of validation completion; a variant that training has improved by less has hardly been trained."""
@@ -60,7 +58,7 @@ class Study:
     variants: Mapping[str, Variant]
     budget: Budget
     seeds: int
-    rows: Sequence[AblationRow]
+    rows: Sequence[RunRow]
     curves: Mapping[tuple[str, int], LearningCurve]
 
     @property
@@ -103,8 +101,3 @@ class Study:
             Comparison(question=question, distribution=distribution, variant=variant, effect=effect, adjusted=p)
             for (distribution, variant, effect), p in zip(found, adjusted, strict=True)
         ]
-
-
-def read_curves(folders: Mapping[tuple[str, int], Path]) -> dict[tuple[str, int], LearningCurve]:
-    """The learning curves in the folders of runs."""
-    return {key: read_history(folder) for key, folder in folders.items()}

@@ -11,6 +11,8 @@ from mrta_zoo.train.config import TrainConfig
 REFERENCE, CAPAM = "reference", "capam"
 """The two variants that others are compared with: with the candidate decoder, and with the paper's."""
 
+ROBOTS = (1, 2, 4)
+"""Of the held-out scenarios, from the most tasks a robot to the fewest."""
 PLUS_NETWORK = NetworkConfig(
     embedding=32, heads=4, moments=3, decoder="candidates", decision_layers=1, candidates=8, peers=4
 )

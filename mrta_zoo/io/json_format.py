@@ -108,30 +108,40 @@ def read_json_part(path: StrPath) -> Part:
         ScenarioError: if it is missing or malformed.
     """
     data = read_document(path, ScenarioJson, _PARTS, ScenarioError)
+    return json_part(path, data.map, data.tasks, data.robots, data.name or Path(path).stem)
+
+
+def json_part(path: StrPath, size: MapJson, tasks: Sequence[TaskJson], robots: Sequence[RobotJson], name: str) -> Part:
+    """What any JSON file that holds a scenario says of it."""
     return Part(
         path=str(path),
         tasks=tuple(
             TaskRow(f"{path}: tasks[{index}]", task.x, task.y, task.deadline, task.workload)
-            for index, task in enumerate(data.tasks)
+            for index, task in enumerate(tasks)
         ),
         robots=tuple(
             RobotRow(f"{path}: robots[{index}]", robot.x, robot.y, robot.capacity, robot.speed)
-            for index, robot in enumerate(data.robots)
+            for index, robot in enumerate(robots)
         ),
-        map=MapRow(f"{path}: map", data.map.width, data.map.height),
-        name=data.name or Path(path).stem,
+        map=MapRow(f"{path}: map", size.width, size.height),
+        name=name,
     )
 
 
 def is_other_json(path: Path) -> bool:
     """Whether a JSON file is one of this package's that says itself to be no scenario, such as a plan."""
+    kind = json_kind(path)
+    return kind.startswith("mrta_zoo.") and kind != "mrta_zoo.scenario"
+
+
+def json_kind(path: Path) -> str:
+    """The format that a ``.json`` file says it has, such as "mrta_zoo.plan"; empty if it does not say."""
     if path.suffix != ".json":
-        return False
+        return ""
     try:
-        head = msgspec.json.decode(path.read_bytes(), type=_Head)
+        return msgspec.json.decode(path.read_bytes(), type=_Head).format
     except (OSError, msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
-        return False  # the reader will say what is wrong with it
-    return head.format.startswith("mrta_zoo.") and head.format != "mrta_zoo.scenario"
+        return ""  # the reader will say what is wrong with it
 
 
 class _Head(msgspec.Struct):
@@ -144,17 +154,20 @@ def write_json(scenario: Scenario, path: StrPath) -> None:
     Raises:
         ScenarioError: if the file cannot be written.
     """
+    document = {"format": "mrta_zoo.scenario", "version": 1, **scenario_fields(scenario)}
+    write_document(document, path, ScenarioError)
+
+
+def scenario_fields(scenario: Scenario) -> dict[str, Any]:
+    """The fields that hold a scenario in any JSON file."""
     tasks = zip(scenario.task_xy.tolist(), scenario.deadline.tolist(), scenario.workload.tolist(), strict=True)
     robots = zip(scenario.robot_xy.tolist(), scenario.capacity.tolist(), scenario.speed.tolist(), strict=True)
-    document = {
-        "format": "mrta_zoo.scenario",
-        "version": 1,
+    return {
         "name": scenario.name,
         "map": {"width": scenario.map_size[0], "height": scenario.map_size[1]},
         "tasks": [{"x": x, "y": y, "deadline": due, "workload": work} for (x, y), due, work in tasks],
         "robots": [{"x": x, "y": y, "capacity": rate, "speed": speed} for (x, y), rate, speed in robots],
     }
-    write_document(document, path, ScenarioError)
 
 
 def read_plan(path: StrPath) -> Plan:
@@ -195,7 +208,7 @@ def write_plan(
     write_document(document, path, PlanError)
 
 
-def schema_text(document: type[ScenarioJson] | type[PlanJson]) -> str:
+def schema_text(document: type[msgspec.Struct]) -> str:
     """The JSON Schema of a kind of file, as it lies beside this module."""
     schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(document)}
     return json.dumps(schema, indent=2) + "\n"

@@ -69,7 +69,7 @@ def read_document(path: StrPath, kind: type[Document], parts: Parts, error: type
 
 def _check_names(document: dict[str, Any], path: StrPath, error: type[MrtaError]) -> None:
     """Names are printed and written again, which some characters would upset."""
-    for field in ("name", "scenario", "method"):
+    for field in ("name", "scenario", "method", "decode"):
         value = document.get(field)
         if not isinstance(value, str):
             continue
@@ -79,8 +79,8 @@ def _check_names(document: dict[str, Any], path: StrPath, error: type[MrtaError]
 
 
 def _int(token: str) -> int | float:
-    # No index or id is longer, and Python refuses to read very long ones.
-    return int(token) if len(token) <= 18 else _float(token)
+    # No index or seed is longer, and Python refuses to read very long ones.
+    return int(token) if len(token) <= 19 else _float(token)
 
 
 def _float(token: str) -> float:
@@ -136,6 +136,8 @@ def _sentence(path: StrPath, message: str, document: Any, kind: type[msgspec.Str
         if field[1] == "required":
             return f"{where} has no field {shown(field[2])}; expected {fields}"
         return f"{where} has an unknown field {shown(field[2])}; expected only {fields}"
+    if complaint.startswith("Invalid enum value") and place in kind.__struct_fields__:
+        return f"{where} is {shown(value)}; expected one of {', '.join(get_args(get_type_hints(kind)[place]))}"
     expected = _EXPECTED.match(complaint)
     if not expected:
         return f"{where} is {shown(value)}; {complaint}"

@@ -8,6 +8,8 @@ from mrta_zoo.mission import Mission
 from mrta_zoo.render.whereabouts import whereabouts
 from mrta_zoo.rules import Status
 
+_MOST_DUE, _LONGEST_TRAIL = 6, 3
+
 
 def headline(mission: Mission) -> str:
     """Name, time and number of tasks by status, on one line."""
@@ -18,17 +20,45 @@ def headline(mission: Mission) -> str:
 
 
 def describe(mission: Mission) -> str:
-    """The state of a mission: one line on the tasks, one for each robot."""
+    """The state of a mission: a line on the tasks, one on those due next, one for each robot with its last tasks."""
     width = len(f"robot_{mission.scenario.num_robots - 1}")
-    lines = [headline(mission), f"{'robot':<{width}}  {'x':>8}  {'y':>8}  {'taken':>5}  doing"]
+    lines = [headline(mission)]
+    if due := _due_next(mission):
+        lines.append(f"due next: {due}")
+    lines.append(f"{'robot':<{width}}  {'x':>8}  {'y':>8}  {'taken':>5}  {'last tasks':<14}  doing")
     for robot, route in enumerate(mission.routes):
         now = whereabouts(mission, robot)
-        doing = {
-            "acting": "chooses now",
-            "waiting": "is free",
-            "retired": "is retired",
-            "travelling": f"on its way to task {mission.heading[robot]}, until {mission.ready[robot]:.1f}",
-            "working": f"at work on task {mission.heading[robot]}, until {mission.ready[robot]:.1f}",
-        }[now.doing]
-        lines.append(f"{f'robot_{robot}':<{width}}  {now.x:8.2f}  {now.y:8.2f}  {len(route):5d}  {doing}")
+        lines.append(
+            f"{f'robot_{robot}':<{width}}  {now.x:8.2f}  {now.y:8.2f}  {len(route):5d}  {_trail(mission, robot):<14}  "
+            f"{_doing(mission, robot, now.doing)}"
+        )
     return "\n".join(lines)
+
+
+def _due_next(mission: Mission) -> str:
+    """The active tasks with the earliest deadlines."""
+    deadline = mission.scenario.deadline
+    active = np.flatnonzero(mission.status == Status.ACTIVE)
+    first = active[np.argsort(deadline[active], kind="stable")]
+    more = ", …" if len(first) > _MOST_DUE else ""
+    return ", ".join(f"task {task} at {deadline[task]:.1f}" for task in first[:_MOST_DUE].tolist()) + more
+
+
+def _trail(mission: Mission, robot: int) -> str:
+    """The tasks a robot has behind it, the latest last."""
+    route = mission.routes[robot]
+    behind = route[:-1] if mission.heading[robot] >= 0 else route
+    earlier = "… " if len(behind) > _LONGEST_TRAIL else ""
+    return earlier + " ".join(map(str, behind[-_LONGEST_TRAIL:])) or "-"
+
+
+def _doing(mission: Mission, robot: int, doing: str) -> str:
+    task, until = mission.heading[robot], mission.ready[robot]
+    when = f"until {until:.1f}, deadline {mission.scenario.deadline[task]:.1f}"
+    return {
+        "acting": "chooses now",
+        "waiting": "is free",
+        "retired": "is retired",
+        "travelling": f"on its way to task {task}, {when}",
+        "working": f"at work on task {task}, {when}",
+    }[doing]

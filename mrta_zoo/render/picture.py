@@ -1,138 +1,127 @@
-"""A mission as a picture: the map with tasks and routes, and a column that says what each robot does.
+"""A mission as a picture: the map with tasks and trails, and a column that says what each robot does.
 
-Needs matplotlib (``mrta_zoo[plot]``), which it uses without its global state, so that it draws in any thread, with
-or without a display.
+Needs pygame (``mrta_zoo[render]``), but no display.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
+import pygame
 
-from mrta_zoo.extras import require
 from mrta_zoo.mission import Mission
-from mrta_zoo.render.style import FAINT, INK, plain
+from mrta_zoo.palette import FAINT, GROUND, INK, MISSED, URGENCY, blend, robot_colour
+from mrta_zoo.render.canvas import Canvas, Point
+from mrta_zoo.render.panel import draw_panel
 from mrta_zoo.render.whereabouts import whereabouts
 from mrta_zoo.rules import Status
 
-try:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
-except ImportError:
-    require("plot", "a picture")
-    raise
+SIZE = (1040, 720)
+"""Width and height in pixels; both even, as video formats want."""
 
-ROBOT_COLOURS = (
-    "#3b6fb6", "#d9772b", "#7a52a3", "#0f9aa8", "#c2478f", "#8a6a3a", "#5a6b7d", "#a3a12a", "#2f4b8f", "#b35c5c",
-)  # fmt: skip
-"""One for each robot, from the start again after the last."""
-
-TASK_STYLE: dict[Status, dict[str, Any]] = {
-    Status.ACTIVE: {"marker": "o", "s": 30, "facecolors": "white", "edgecolors": "#5f6b76", "linewidths": 1.2},
-    Status.ASSIGNED: {"marker": "o", "s": 34, "facecolors": "#f6c445", "edgecolors": "#7d5f06", "linewidths": 1.0},
-    Status.COMPLETED: {"marker": "o", "s": 34, "facecolors": "#3fa35b", "edgecolors": "#1d5c30", "linewidths": 1.0},
-    Status.MISSED: {"marker": "X", "s": 64, "facecolors": "#d6453d", "edgecolors": "white", "linewidths": 0.7},
-}
-MOST_LISTED = 24
+_LEFT, _TOP, _WIDTH, _HEIGHT = 40.0, 52.0, 636.0, 636.0
+_PANEL_LEFT = 704.0
+_MOST_NUMBERED = 150
+"""Tasks on the map that still get their number."""
+_RECENT_LEGS = 4
+"""Of each trail, drawn ever fainter; those before are as faint as the last of them."""
 
 
-def picture(mission: Mission) -> npt.NDArray[np.uint8]:
-    """(720, 1040, 3) uint8, the mission at this moment."""
-    figure = draw(mission)
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    return np.asarray(canvas.buffer_rgba())[..., :3].copy()
+def draw(mission: Mission) -> pygame.Surface:
+    """The mission at this moment, robots in transit where they are now, (1040, 720) pixels."""
+    canvas = Canvas(SIZE, "#ffffff")
+    frame = _Frame.around(mission.scenario.map_size)
+    canvas.text(mission.scenario.name[:48], (_LEFT, 27), 25, INK)
+    canvas.text(f"time {mission.time:.1f}", (_PANEL_LEFT, 27), 25, INK)
+    _draw_ground(canvas, frame, mission.scenario.map_size)
+    detail = min(1.0, max(0.45, 11.0 / mission.scenario.num_tasks**0.5))  # smaller marks where there are many
+    here = [whereabouts(mission, robot) for robot in range(mission.scenario.num_robots)]
+    places = [frame.pixel((each.x, each.y)) for each in here]
+    for robot, place in enumerate(places):
+        _draw_trail(canvas, frame, mission, robot, place, detail)
+    _draw_tasks(canvas, frame, mission, detail)
+    crowd = 1.0 if mission.scenario.num_robots <= 20 else 0.72
+    for robot in sorted(range(len(places)), key=lambda robot: robot == mission.actor):  # the actor on top
+        place = places[robot]
+        if robot == mission.actor:
+            canvas.disc(place, 13.5 * crowd, "#ffffff", INK, 2.0)
+        canvas.disc(place, 10.0 * crowd, robot_colour(robot), "#ffffff", 1.2)
+        canvas.text(str(robot), place, 15 * crowd if robot < 100 else 11 * crowd, "#ffffff", align=0.5)
+    draw_panel(canvas, mission, [each.doing for each in here], _PANEL_LEFT, SIZE[1] - 12.0)
+    return canvas.finished()
 
 
-def draw(mission: Mission) -> Figure:
-    """The same as a matplotlib figure, to be saved in any format."""
-    figure = Figure(figsize=(10.4, 7.2), dpi=100, facecolor="white")
-    _draw_map(figure.add_axes((0.055, 0.06, 0.62, 0.86)), mission)
-    _draw_robots(figure.add_axes((0.70, 0.06, 0.29, 0.86)), mission)
-    figure.text(0.055, 0.955, mission.scenario.name, fontsize=13, fontweight="bold", color=INK)
-    figure.text(0.70, 0.955, f"time {mission.time:.1f}", fontsize=13, fontweight="bold", color=INK)
-    return figure
+@dataclass(frozen=True, slots=True)
+class _Frame:
+    """Where the map lies: pixels per distance unit, and the pixel of its origin, the lower left corner."""
+
+    scale: float
+    origin: Point
+
+    @classmethod
+    def around(cls, map_size: tuple[float, float]) -> _Frame:
+        width, height = map_size
+        scale = min(_WIDTH / width, _HEIGHT / height)
+        return cls(scale, (_LEFT + (_WIDTH - scale * width) / 2, _TOP + (_HEIGHT + scale * height) / 2))
+
+    def pixel(self, place: tuple[float, float]) -> Point:
+        return (self.origin[0] + self.scale * place[0], self.origin[1] - self.scale * place[1])
 
 
-def _draw_map(axes: Any, mission: Mission) -> None:
+def _draw_ground(canvas: Canvas, frame: _Frame, map_size: tuple[float, float]) -> None:
+    margin = 12.0
+    left, top = frame.pixel((0.0, map_size[1]))
+    size = (frame.scale * map_size[0], frame.scale * map_size[1])
+    canvas.rectangle((left - margin, top - margin), (size[0] + 2 * margin, size[1] + 2 * margin), GROUND)
+    step = _round_step(max(map_size) / 5)
+    right, bottom = left + size[0], top + size[1]
+    for x in np.arange(0.0, map_size[0] + step / 100, step):
+        at = frame.pixel((x, 0.0))[0]
+        canvas.line((at, top - margin), (at, bottom + margin), "#ffffff", 1.5)
+        canvas.text(f"{x:g}", (at, bottom + margin + 9), 14, FAINT, align=0.5)
+    for y in np.arange(0.0, map_size[1] + step / 100, step):
+        at = frame.pixel((0.0, y))[1]
+        canvas.line((left - margin, at), (right + margin, at), "#ffffff", 1.5)
+        canvas.text(f"{y:g}", (left - margin - 4, at), 14, FAINT, align=1.0)
+
+
+def _draw_trail(canvas: Canvas, frame: _Frame, mission: Mission, robot: int, now: Point, detail: float) -> None:
+    """Where it came from, fainter with age, and dashed where it is heading."""
+    scenario, route = mission.scenario, mission.routes[robot]
+    colour, start = robot_colour(robot), frame.pixel(tuple(scenario.robot_xy[robot].tolist()))
+    under_way = mission.heading[robot] >= 0
+    stops = [frame.pixel(tuple(scenario.task_xy[task].tolist())) for task in route]
+    trail = [start, *(stops[:-1] if under_way else stops), now]
+    for leg, (begin, end) in enumerate(pairwise(trail)):
+        age = min(len(trail) - 2 - leg, _RECENT_LEGS)
+        canvas.line(begin, end, blend((colour, GROUND), 0.15 + 0.6 * age / _RECENT_LEGS), 2.2 * detail)
+    if under_way:
+        canvas.dashes(now, stops[-1], colour, 2.2 * detail)
+    canvas.square(start, 11.0 * max(detail, 0.6), "#ffffff", blend((colour, GROUND), 0.3), 2.0)
+
+
+def _draw_tasks(canvas: Canvas, frame: _Frame, mission: Mission, detail: float) -> None:
     scenario = mission.scenario
-    width, height = scenario.map_size
-    margin = 0.025 * max(width, height)
-    axes.set(xlim=(-margin, width + margin), ylim=(-margin, height + margin), aspect="equal")
-    plain(axes)
-    for robot, route in enumerate(mission.routes):
-        colour = _colour(robot)
-        now = whereabouts(mission, robot)
-        under_way = mission.heading[robot] >= 0
-        done = route[:-1] if under_way else route
-        trail = np.vstack((scenario.robot_xy[robot], scenario.task_xy[done], (now.x, now.y)))
-        axes.plot(*trail.T, color=colour, linewidth=1.6, alpha=0.75, zorder=2, solid_joinstyle="round")
-        if under_way:
-            ahead = np.vstack(((now.x, now.y), scenario.task_xy[route[-1]]))
-            axes.plot(*ahead.T, color=colour, linewidth=1.6, linestyle=(0, (2, 1.5)), zorder=2)
-        axes.scatter(*scenario.robot_xy[robot], marker="s", s=44, c="white", edgecolors=colour, linewidths=2, zorder=3)
-    for status, style in TASK_STYLE.items():
-        axes.scatter(*scenario.task_xy[mission.status == status].T, zorder=4, **style)
-    for robot in range(scenario.num_robots):
-        now = whereabouts(mission, robot)
-        ring = INK if robot == mission.actor else "white"
-        axes.scatter(now.x, now.y, s=190, c=_colour(robot), edgecolors=ring, linewidths=1.8, zorder=5)
-        axes.text(
-            now.x, now.y, str(robot), color="white", fontsize=8, fontweight="bold", ha="center", va="center_baseline",
-            zorder=6,
-        )  # fmt: skip
+    horizon = float(scenario.deadline.max())
+    numbered = scenario.num_tasks <= _MOST_NUMBERED
+    for task, (status, by) in enumerate(zip(mission.status.tolist(), mission.taken_by.tolist(), strict=True)):
+        place = frame.pixel(tuple(scenario.task_xy[task].tolist()))
+        if status == Status.ACTIVE:
+            left = (float(scenario.deadline[task]) - mission.time) / horizon
+            canvas.disc(place, 6.0 * detail, blend(URGENCY, left), FAINT, 1.2 * detail)
+        elif status == Status.ASSIGNED:
+            canvas.disc(place, 7.5 * detail, "#ffffff", robot_colour(by), 2.6 * detail)
+        elif status == Status.COMPLETED:
+            canvas.disc(place, 4.2 * detail, robot_colour(by), "#ffffff", 0.8 * detail)
+        else:
+            canvas.cross(place, 4.2 * detail, MISSED, 2.2 * detail)
+        if numbered:
+            canvas.text(str(task), (place[0] + 6, place[1] - 8), 13, FAINT)
 
 
-def _draw_robots(axes: Any, mission: Mission) -> None:
-    """The legend: tasks by status, then what each robot does."""
-    axes.set_axis_off()
-    axes.set(xlim=(0, 1), ylim=(0, 1))
-    counts = np.bincount(mission.status, minlength=len(Status))
-    handles = [
-        Line2D(
-            [], [], linestyle="", marker=style["marker"], markersize=8, markerfacecolor=style["facecolors"],
-            markeredgecolor=style["edgecolors"], label=f"{counts[status]} {status.name.lower()}",
-        )
-        for status, style in TASK_STYLE.items()
-    ]  # fmt: skip
-    handles.append(
-        Line2D([], [], linestyle="", marker="s", markersize=7, markerfacecolor="white",
-               markeredgecolor=INK, markeredgewidth=1.6, label="start of a robot")
-    )  # fmt: skip
-    legend = axes.legend(
-        handles=handles, loc="upper left", frameon=False, fontsize=10, borderaxespad=0, borderpad=0,
-        handletextpad=0.6, labelspacing=0.55, labelcolor=INK, title=f"{mission.scenario.num_tasks} tasks",
-        alignment="left",
-    )  # fmt: skip
-    legend.get_title().set(fontsize=10, color=FAINT)
-    listed = min(mission.scenario.num_robots, MOST_LISTED)
-    step = min(0.062, 0.66 / (listed + 1))
-    axes.text(0, 0.70, f"{mission.scenario.num_robots} robots", fontsize=10, color=FAINT, va="center")
-    for robot in range(listed):
-        height = 0.70 - (robot + 1) * step
-        axes.scatter(0.045, height, s=min(190, 3200 * step), c=_colour(robot), clip_on=False)
-        axes.text(0.045, height, str(robot), color="white", fontsize=7, fontweight="bold", ha="center",
-                  va="center_baseline")  # fmt: skip
-        acting = robot == mission.actor
-        axes.text(0.12, height, _sentence(mission, robot), fontsize=min(10, 170 * step), color=INK,
-                  va="center_baseline", fontweight="bold" if acting else "normal")  # fmt: skip
-    if listed < mission.scenario.num_robots:
-        axes.text(0.12, 0.0, f"and {mission.scenario.num_robots - listed} more", fontsize=9, color=INK)
-
-
-def _sentence(mission: Mission, robot: int) -> str:
-    task, until = mission.heading[robot], mission.ready[robot]
-    return {
-        "acting": "chooses now",
-        "waiting": "is free",
-        "retired": f"retired after {len(mission.routes[robot])} tasks",
-        "travelling": f"to task {task}, until {until:.1f}",
-        "working": f"works on task {task}, until {until:.1f}",
-    }[whereabouts(mission, robot).doing]
-
-
-def _colour(robot: int) -> str:
-    return ROBOT_COLOURS[robot % len(ROBOT_COLOURS)]
+def _round_step(about: float) -> float:
+    """1, 2 or 5 times a power of ten, near `about`."""
+    power = 10.0 ** np.floor(np.log10(about))
+    return float(power * min((1.0, 2.0, 5.0, 10.0), key=lambda step: abs(step * power - about)))

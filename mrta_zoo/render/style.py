@@ -1,16 +1,15 @@
-"""What our pictures have in common."""
+"""How matplotlib's axes look in our pictures."""
 
 from __future__ import annotations
 
 from typing import Any
 
-INK, FAINT = "#22303c", "#6b7783"
-"""Of text: what matters, and what helps to read it."""
+from mrta_zoo.palette import FAINT, GROUND
 
 
 def plain(axes: Any) -> None:
     """Give matplotlib axes a light background with a white grid, and no frame."""
-    axes.set_facecolor("#f5f6f8")
+    axes.set_facecolor(GROUND)
     axes.grid(color="white", linewidth=1.2)
     axes.set_axisbelow(True)
     axes.tick_params(colors=FAINT, labelsize=8, length=0)

@@ -260,5 +260,6 @@ def _two_least(values: Tensor, dim: int) -> tuple[Tensor, Tensor]:
     if size < 2:
         missing = torch.full_like(values.sum(dim), torch.inf)
         return (values.squeeze(dim) if size else missing), missing
-    least = values.topk(2, dim=dim, largest=False).values
-    return least.select(dim, 0), least.select(dim, 1)
+    # Not topk, which on a GPU gives each of these many short rows a block of its own.
+    least, where = values.min(dim, keepdim=True)
+    return least.squeeze(dim), values.scatter(dim, where, torch.inf).amin(dim)

@@ -28,6 +28,8 @@ class NetworkConfig:
         node_features: what the encoder knows of each task, names in `mrta_zoo.policies.capam.node_features`. The
             paper's are x, y and deadline; it allows more, and here come workload and two features that relate
             deadlines and workloads to the size of the map.
+        context_features: what the "attention" decoder knows of the moment besides the paper's features, names in
+            `mrta_zoo.policies.capam.context`, all of them users' own.
         tanh_clip: scores are clipped to ± this, as in Kool et al. (2019).
     """
 
@@ -49,6 +51,7 @@ class NetworkConfig:
         "workload",
         "workload_in_crossings",
     )
+    context_features: tuple[str, ...] = ()
     tanh_clip: float = 10.0
 
     def __post_init__(self) -> None:
@@ -62,6 +65,11 @@ class NetworkConfig:
             raise ConfigError(f"embedding is {self.embedding}; expected a multiple of heads, {self.heads}")
         if self.decoder not in ("attention", "candidates"):
             raise ConfigError(f"decoder is {self.decoder!r}; expected attention or candidates")
+        if self.context_features and self.decoder != "attention":
+            raise ConfigError(
+                f"context_features is {self.context_features}; expected none with decoder {self.decoder!r}, which has "
+                "no context"
+            )
         if not self.node_features:
             raise ConfigError("node_features is empty; expected at least one feature")
         if not 0 < self.tanh_clip < math.inf:

@@ -2,10 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import torch
 from torch import Tensor, nn
 
 from mrta_zoo.policies.capam.inputs import USUAL_CROSSINGS, Moments, Tasks
+from mrta_zoo.policies.capam.named import Named
+
+ContextFeature = Callable[[Tasks, Moments], Tensor]
+"""(S, G) numbers, one a decision; best about in [0, 1]."""
+
+CONTEXT_FEATURES: Named[ContextFeature] = Named("context_features", {})
+"""Features besides the paper's by the names that `NetworkConfig.context_features` lists, all of them users' own:
+``@CONTEXT_FEATURES.register("name")``."""
 
 
 class Context(nn.Module):
@@ -15,15 +25,21 @@ class Context(nn.Module):
     shared layer, and mean and maximum over the peers are taken: any number of peers, in any order. The two scales
     of the mission (`Tasks.horizon`, `Tasks.work_unit`) go along, since everything else is relative to them.
 
-    To add a context feature, widen `OWN` or `PEER` and add the column in `forward`.
+    Args:
+        embedding: h, length of the query.
+        more: names of features in `CONTEXT_FEATURES` that go along.
+
+    Raises:
+        ConfigError: if there is no feature of some name.
     """
 
     OWN = 7
     PEER = 5
 
-    def __init__(self, embedding: int) -> None:
+    def __init__(self, embedding: int, more: tuple[str, ...] = ()) -> None:
         super().__init__()
-        self.own = nn.Linear(self.OWN, embedding)
+        self.more = tuple(CONTEXT_FEATURES.find(name) for name in more)
+        self.own = nn.Linear(self.OWN + len(more), embedding)
         self.peer = nn.Linear(self.PEER, embedding)
         self.query = nn.Linear(3 * embedding, embedding)
 
@@ -40,6 +56,7 @@ class Context(nn.Module):
                 work_unit,
                 moments.of_ego(moments.capacity),
                 *own_xy.unbind(-1),
+                *(feature(tasks, moments) for feature in self.more),
             ),
             -1,
         )

@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 from torch import nn
 
-from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.attention_encoder import AttentionEncoder
 from mrta_zoo.policies.capam.capsule_encoder import CapsuleEncoder
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.capam.linear_encoder import LinearEncoder
+from mrta_zoo.policies.capam.named import Named
 
 EncoderBuilder = Callable[[int, NetworkConfig], nn.Module]
 """Builds, for a number of node features, a module ``(nodes, exists, graph) -> embeddings``.
@@ -19,12 +19,15 @@ See `CapsuleEncoder.forward` for the shapes. Padding must neither change the emb
 own but 0; `tests/policies/test_network.py` checks that, and more, of every encoder in `ENCODERS`.
 """
 
-ENCODERS: dict[str, EncoderBuilder] = {
-    "capsule": lambda features, c: CapsuleEncoder(features, c.embedding, c.layers, c.hops, c.moments),
-    "attention": lambda features, c: AttentionEncoder(features, c.embedding, c.layers, c.heads),
-    "none": lambda features, c: LinearEncoder(features, c.embedding),
-}
-"""Encoders by name. To use one of your own, put it here under a new name and name it in `NetworkConfig.encoder`."""
+ENCODERS: Named[EncoderBuilder] = Named(
+    "encoder",
+    {
+        "capsule": lambda features, c: CapsuleEncoder(features, c.embedding, c.layers, c.hops, c.moments),
+        "attention": lambda features, c: AttentionEncoder(features, c.embedding, c.layers, c.heads),
+        "none": lambda features, c: LinearEncoder(features, c.embedding),
+    },
+)
+"""Encoders by the name that `NetworkConfig.encoder` takes. ``@ENCODERS.register("name")`` adds one of your own."""
 
 
 def build_encoder(features: int, config: NetworkConfig) -> nn.Module:
@@ -33,6 +36,4 @@ def build_encoder(features: int, config: NetworkConfig) -> nn.Module:
     Raises:
         ConfigError: if there is none of that name.
     """
-    if config.encoder not in ENCODERS:
-        raise ConfigError(f"encoder is {config.encoder!r}; expected one of {', '.join(ENCODERS)}")
-    return ENCODERS[config.encoder](features, config)
+    return ENCODERS.find(config.encoder)(features, config)

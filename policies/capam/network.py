@@ -15,7 +15,7 @@ from mrta_zoo.policies.capam.decoder import AttentionDecoder, Keys
 from mrta_zoo.policies.capam.encoders import build_encoder
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
 from mrta_zoo.policies.capam.neighbourhood import Neighbourhood
-from mrta_zoo.policies.capam.node_features import node_features
+from mrta_zoo.policies.capam.node_features import NODE_FEATURES, node_features
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,17 +49,22 @@ class AllocationNetwork(nn.Module):
 
     With the default configuration this is CapAM; with ``encoder="attention"`` the paper's AM-RL; with
     ``decoder="candidates"`` CapAM+.
+
+    Raises:
+        ConfigError: if there is no encoder or feature of a name that the configuration lists.
     """
 
     def __init__(self, config: NetworkConfig) -> None:
         super().__init__()
         self.config = config
+        for name in config.node_features:
+            NODE_FEATURES.find(name)  # now rather than at the first mission
         h = config.embedding
         self.encoder = build_encoder(len(config.node_features), config)
         self.context: Context | None = None
         self.decoder: AttentionDecoder | CandidateDecoder
         if config.decoder == "attention":
-            self.context = Context(h)
+            self.context = Context(h, config.context_features)
             self.decoder = AttentionDecoder(h, config.heads, config.tanh_clip)
         else:
             self.decoder = CandidateDecoder(h, config.heads, config.decision_layers)

@@ -1,4 +1,4 @@
-"""What the encoders know of each task. To add a feature, give it an entry in `NODE_FEATURES`."""
+"""What the encoders know of each task. ``@NODE_FEATURES.register("name")`` adds a feature of your own."""
 
 from __future__ import annotations
 
@@ -7,19 +7,25 @@ from collections.abc import Callable
 import torch
 from torch import Tensor
 
-from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.inputs import USUAL_CROSSINGS, Tasks
+from mrta_zoo.policies.capam.named import Named
 
-NODE_FEATURES: dict[str, Callable[[Tasks], Tensor]] = {
-    "x": lambda tasks: tasks.xy[..., 0],
-    "y": lambda tasks: tasks.xy[..., 1],
-    "deadline": lambda tasks: tasks.deadline,
-    "deadline_in_crossings": lambda tasks: tasks.deadline * tasks.horizon[:, None] / USUAL_CROSSINGS,
-    "workload": lambda tasks: tasks.workload,
-    "workload_in_crossings": lambda tasks: tasks.workload * tasks.work_unit[:, None],
-}
-"""Features by the names that `NetworkConfig.node_features` lists; each gives (S, N), about in [0, 1]. Networks that
-were trained with another list keep it, so that a new entry does not touch them."""
+NodeFeature = Callable[[Tasks], Tensor]
+"""(S, N) numbers, one a task; best about in [0, 1]."""
+
+NODE_FEATURES: Named[NodeFeature] = Named(
+    "node_features",
+    {
+        "x": lambda tasks: tasks.xy[..., 0],
+        "y": lambda tasks: tasks.xy[..., 1],
+        "deadline": lambda tasks: tasks.deadline,
+        "deadline_in_crossings": lambda tasks: tasks.deadline * tasks.horizon[:, None] / USUAL_CROSSINGS,
+        "workload": lambda tasks: tasks.workload,
+        "workload_in_crossings": lambda tasks: tasks.workload * tasks.work_unit[:, None],
+    },
+)
+"""Features by the names that `NetworkConfig.node_features` lists. Networks that were trained with another list keep it,
+so that a new entry does not touch them."""
 
 
 def node_features(tasks: Tasks, names: tuple[str, ...]) -> Tensor:
@@ -28,7 +34,4 @@ def node_features(tasks: Tasks, names: tuple[str, ...]) -> Tensor:
     Raises:
         ConfigError: if there is no feature of some name.
     """
-    for name in names:
-        if name not in NODE_FEATURES:
-            raise ConfigError(f"node_features has {name!r}; expected some of {', '.join(NODE_FEATURES)}")
-    return torch.stack([NODE_FEATURES[name](tasks) for name in names], -1)
+    return torch.stack([NODE_FEATURES.find(name)(tasks) for name in names], -1)

@@ -16,11 +16,11 @@ import numpy as np
 import pytest
 
 from mrta_zoo.cli import main
-from mrta_zoo.eval.ablation.held_out import HeldOut
 from mrta_zoo.eval.ablation.questions import QUESTIONS, choose, needed
 from mrta_zoo.eval.ablation.study import Study
-from mrta_zoo.eval.ablation.variants import CAPAM, REFERENCE, Budget, all_variants
+from mrta_zoo.eval.ablation.variants import CAPAM, REFERENCE, ROBOTS, Budget, all_variants
 from mrta_zoo.eval.plot_history import LearningCurve
+from mrta_zoo.eval.training.held_out import HeldOut
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.scenarios import draw
@@ -63,7 +63,7 @@ def test_every_field_of_the_budget_is_a_setting() -> None:
 
 
 def test_held_out_scenarios_are_none_of_those_trained_on() -> None:
-    few, many = HeldOut(6, 2).scenarios("taptc", 2), HeldOut(6, 4).scenarios("taptc", 2)
+    few, many = HeldOut(6, 2, ROBOTS).scenarios("taptc", 2), HeldOut(6, 4, ROBOTS).scenarios("taptc", 2)
     assert [each.name for each in many] == [f"taptc-a2-{index:03d}" for index in range(4)]
     for one, other in zip(few, many, strict=False):
         assert np.array_equal(one.task_xy, other.task_xy)
@@ -74,7 +74,7 @@ def test_held_out_scenarios_are_none_of_those_trained_on() -> None:
         for xy in draw(config, TaptcGenerator((6, 6), (2, 2)), update).scenarios.task_xy.numpy()
     }
     assert not seen & {each.task_xy.tobytes() for each in many}
-    uniform = HeldOut(6, 2).scenarios("uniform", 2)
+    uniform = HeldOut(6, 2, ROBOTS).scenarios("uniform", 2)
     assert not np.array_equal(uniform[0].task_xy, few[0].task_xy)
 
 

@@ -75,7 +75,7 @@ def test_errors(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("module", ["eval.plot_plan", "eval.plot_history", "render.picture"])
+@pytest.mark.parametrize("module", ["eval.plot_plan", "eval.plot_history"])
 def test_without_matplotlib_it_names_the_extra(module: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     for name in [name for name in sys.modules if name.startswith("matplotlib.")]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
-from test_readme import ALL_BLOCKS, BLOCKS, README
+from test_readme import ALL_BLOCKS, BLOCKS
 
 OTHERS = [block for block in ALL_BLOCKS if block not in BLOCKS]
 pytestmark = [pytest.mark.integrations, pytest.mark.filterwarnings("ignore")]
@@ -13,6 +15,7 @@ def test_there_is_one_for_each_library() -> None:
     assert len(OTHERS) == 5
 
 
-@pytest.mark.parametrize("block", OTHERS, ids=range(len(OTHERS)))
-def test_example_runs(block: str) -> None:
-    exec(compile(block, str(README), "exec"), {"__name__": "readme"})
+@pytest.mark.parametrize(("page", "block"), OTHERS)
+def test_example_runs(page: Path, block: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    exec(compile(block, str(page), "exec"), {"__name__": "readme"})

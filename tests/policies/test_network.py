@@ -190,10 +190,10 @@ def test_embeddings_of_padding_are_zero(encoder: str) -> None:
 
 
 def test_unknown_node_feature_is_told() -> None:
-    (scenario,) = draw(1)
-    network = build_network(replace(SMALL, node_features=("x", "priority")), "shared", 1, seed=0)
-    with pytest.raises(ConfigError, match=r"node_features has 'priority'; expected some of x, y, deadline"):
-        roll_out(network, ScenarioBatch.of([scenario]))
+    with pytest.raises(
+        ConfigError, match=r"node_features has 'priority'; expected x, y, deadline.* or one of your own"
+    ):
+        build_network(replace(SMALL, node_features=("x", "priority")), "shared", 1, seed=0)
 
 
 def test_a_policy_serves_the_parallel_form_too() -> None:
@@ -275,7 +275,7 @@ def test_initial_weights_come_from_the_seed_alone() -> None:
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"encoder": "graph"}, r"encoder is 'graph'; expected one of capsule, attention"),
+        ({"encoder": "graph"}, r"encoder has 'graph'; expected capsule, attention, none, or one of your own"),
         ({"embedding": 30}, r"embedding is 30; expected a multiple of heads, 8"),
         ({"node_features": ()}, r"node_features is empty; expected at least one feature"),
         ({"moments": 0}, r"moments is 0; expected a whole number from 1 to 16"),

@@ -164,3 +164,23 @@ def test_what_it_cannot_do_is_told(tmp_path: Path) -> None:
         bare.train(replace(TINY, baseline="rollout"), tmp_path / "out")
     with pytest.raises(ConfigError, match="not a configuration"):
         bare.read_config(tmp_path / "nothing.json")
+
+
+def test_says_how_many_plans_there_were(tmp_path: Path, plans: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    bare.train(replace(TINY, imitation_plans=100, imitation_updates=1, updates=1), tmp_path / "out", plans)
+    assert "holds 12 plans, not 100" in capsys.readouterr().out
+    assert json.loads((tmp_path / "out.json").read_text())["config"]["imitation_plans"] == 12
+
+
+def test_fits_a_resumed_run_into_the_time_left(
+    tmp_path: Path, plans: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bare.train(TINY, tmp_path / "out", plans)
+    clock = count()
+    monkeypatch.setattr(bare, "time", SimpleNamespace(perf_counter=lambda: next(clock)))
+    longer = replace(TINY, updates=1000, scenarios=1, validation_scenarios=2, epoch=1000, normalise=False)
+    bare.train(longer, tmp_path / "out", seconds=126, fit=True, resume=True)
+    # The clock shows 2 when training starts, and goes on by 1 a step: 77 after 75 steps. Of the 126 there are then
+    # 126 - 77 - 12 = 37 left, for int(37 / 1.08) = 34 more; and 4 of REINFORCE had been done before.
+    assert "113 updates of REINFORCE" in capsys.readouterr().out
+    assert about(tmp_path / "out.last.npz")["update"] == 4 + 113

@@ -34,7 +34,7 @@ def weights(run: Reinforce) -> dict[str, torch.Tensor]:
 
 
 @pytest.mark.parametrize("baseline", ["samples", "rollout", "exponential"])
-@pytest.mark.parametrize("sharing", ["shared", "independent"])
+@pytest.mark.parametrize("sharing", ["shared", "independent", "by-capacity"])
 def test_resumed_run_ends_in_the_same_bits(tmp_path: Path, baseline: str, sharing: str) -> None:
     config = replace(TINY, baseline=baseline, sharing=sharing, significance=0.9)
     straight = Reinforce(config)

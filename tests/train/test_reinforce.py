@@ -12,7 +12,7 @@ from factories import hopeless_scenario
 from mrta_zoo import Scenario
 from mrta_zoo.batch import BatchMission, ScenarioBatch
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.generators import UniformGenerator
+from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
 from mrta_zoo.policies.rollout import roll_out
@@ -35,7 +35,7 @@ TINY = TrainConfig(
 )
 
 
-@pytest.mark.parametrize("sharing", ["shared", "independent"])
+@pytest.mark.parametrize("sharing", ["shared", "independent", "by-capacity"])
 @pytest.mark.parametrize("decoder", ["attention", "candidates"])
 def test_accumulated_gradient_is_that_of_decisions_taken_one_by_one(sharing: str, decoder: str) -> None:
     config = replace(SMALL, decoder=decoder, decision_layers=2, candidates=15, peers=2)
@@ -43,7 +43,7 @@ def test_accumulated_gradient_is_that_of_decisions_taken_one_by_one(sharing: str
     rng = np.random.default_rng(0)
     # Missions of very different lengths, so that some are dropped on the way.
     scenarios = ScenarioBatch.of(
-        [UniformGenerator(tasks=n, robots=(1, 4))(rng) for n in (3, 40, 12)]  # type: ignore[arg-type]
+        [TaptcGenerator(tasks=n, robots=(1, 4))(rng) for n in (3, 40, 12)]  # type: ignore[arg-type]
     )
     rollout = roll_out(
         network,
@@ -82,13 +82,13 @@ def test_accumulated_gradient_is_that_of_decisions_taken_one_by_one(sharing: str
             torch.testing.assert_close(gradients[name], parameter.grad, rtol=1e-3, atol=1e-5, msg=name)
 
 
-@pytest.mark.parametrize("sharing", ["shared", "independent"])
+@pytest.mark.parametrize("sharing", ["shared", "independent", "by-capacity"])
 @pytest.mark.parametrize("decoder", ["attention", "candidates"])
 def test_accumulated_gradient_is_autograds_of_the_whole_surrogate(sharing: str, decoder: str) -> None:
     config = replace(SMALL, decoder=decoder, decision_layers=1, candidates=6, peers=2)
     network = build_network(config, sharing, robots=5, seed=0)  # type: ignore[arg-type]
     rng = np.random.default_rng(3)
-    generator = UniformGenerator(tasks=20, robots=(1, 3))  # type: ignore[arg-type]
+    generator = TaptcGenerator(tasks=20, robots=(1, 3))  # type: ignore[arg-type]
     scenarios = ScenarioBatch.of([generator(rng) for _ in range(4)])
     sampling = torch.Generator().manual_seed(2)
     rollout = roll_out(network, scenarios, samples=3, generator=sampling, keep_segments=True)
@@ -124,12 +124,20 @@ def test_without_any_decision_there_is_no_gradient() -> None:
 
 
 @pytest.mark.parametrize("baseline", ["samples", "rollout"])
-@pytest.mark.parametrize("sharing", ["shared", "independent"])
+@pytest.mark.parametrize("sharing", ["shared", "independent", "by-capacity"])
 def test_a_seed_gives_the_same_run(baseline: str, sharing: str) -> None:
     config = replace(TINY, baseline=baseline, sharing=sharing)
     runs = [list(Reinforce(each).run()) for each in (config, config, replace(config, seed=1))]
     assert runs[0] == runs[1] != runs[2]
     assert [event.update for event in runs[0] if isinstance(event, Validation)] == [0, 2, 4]
+
+
+def test_an_objective_of_your_own_is_what_is_minimised() -> None:
+    # As many points as tasks were completed: the loss is their mean, and the fewer the better.
+    run = Reinforce(TINY, objective=lambda rollout, scenarios: rollout.completed.double())
+    first = run.step()
+    assert 1 <= first.loss <= 10
+    assert first.loss == pytest.approx(10 * (1 - Reinforce(TINY).step().loss))  # the same missions, seen otherwise
 
 
 class Detour:

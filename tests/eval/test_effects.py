@@ -6,16 +6,15 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from mrta_zoo.eval.ablation.claims import Claim
-from mrta_zoo.eval.ablation.effects import Effect, arrange, effect_of, run_values
-from mrta_zoo.eval.ablation.rows import AblationRow
 from mrta_zoo.eval.statistics import ALL_EQUAL, TOO_FEW, Estimate
+from mrta_zoo.eval.training.effects import Effect, arrange, effect_of, run_values
+from mrta_zoo.eval.training.rows import RunRow
 
 
-def rows(variant: str, seed: int, completed: dict[int, list[int]]) -> list[AblationRow]:
+def rows(variant: str, seed: int, completed: dict[int, list[int]]) -> list[RunRow]:
     """Rows of a run on scenarios with 10 tasks, by number of robots."""
     return [
-        AblationRow(variant, seed, "taptc", robots, index, count, 10)
+        RunRow(variant, seed, "taptc", robots, index, count, 10)
         for robots, counts in completed.items()
         for index, count in enumerate(counts)
     ]
@@ -122,30 +121,3 @@ def test_one_run_has_no_interval_and_equal_runs_no_width() -> None:
     assert effect == Effect(difference=Estimate(15.0, None, None, 2, TOO_FEW))
     same = {"a": {0: RUNS["c"][0], 1: RUNS["c"][0]}, "b": {0: RUNS["c"][0], 1: RUNS["c"][0]}}
     assert effect_of(same, {"a": 1.0, "b": -1.0}, EQUAL).difference == Estimate(0, 0, 0, 4, ALL_EQUAL)
-
-
-@pytest.mark.parametrize(
-    ("mean", "low", "high", "adjusted", "verdict"),
-    [
-        (3.0, 1.0, 5.0, 0.01, "supported"),
-        (3.0, 1.0, 5.0, 0.06, "undecided"),  # sure alone, not among three claims
-        (3.0, -1.0, 7.0, 0.2, "undecided"),
-        (-3.0, -5.0, -1.0, 0.01, "not supported"),  # the opposite is sure
-        (0.0, -0.9, 0.9, 0.9, "not supported"),  # at most 0.9 points, which is next to nothing
-        (0.5, 0.2, 0.8, 0.01, "supported"),  # little, but there
-        (3.0, None, None, None, "undecided"),  # one run
-    ],
-)
-def test_verdicts(mean: float, low: float | None, high: float | None, adjusted: float | None, verdict: str) -> None:
-    effect = Effect(difference=Estimate(mean, low, high, 4, "" if low is not None else TOO_FEW), p=adjusted)
-    claim = Claim(name="A over B", says="As said.", effect=effect, adjusted=adjusted)
-    assert claim.verdict == verdict
-    assert f": {verdict}. (As said.)" in claim.sentence
-
-
-def test_an_answer_says_its_numbers() -> None:
-    effect = Effect(difference=Estimate(-1.25, -3.0, 0.5, 4), p=0.1)
-    claim = Claim(name="CapAM over AM", says="As said.", effect=effect, adjusted=0.3)
-    assert claim.sentence == (
-        "CapAM over AM: −1.2 points, 95 % interval −3.0 to +0.5, adjusted p = 0.3: not supported. (As said.)"
-    )

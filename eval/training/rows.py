@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class AblationRow:
+class RunRow:
     """What a trained variant reached on a scenario, in one greedy pass, by the verifier's count.
 
     Attributes:

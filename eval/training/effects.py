@@ -26,8 +26,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-from mrta_zoo.eval.ablation.rows import AblationRow
 from mrta_zoo.eval.statistics import ALL_EQUAL, LEVEL, TOO_FEW, Estimate, Values
+from mrta_zoo.eval.training.rows import RunRow
 
 Runs = Mapping[int, Mapping[int, Values]]
 """By seed, then by number of robots: % completed of each scenario, in the order of the scenarios."""
@@ -52,7 +52,7 @@ class Effect:
     freedom: float | None = None
 
 
-def arrange(rows: Iterable[AblationRow]) -> dict[tuple[str, str], dict[int, dict[int, Values]]]:
+def arrange(rows: Iterable[RunRow]) -> dict[tuple[str, str], dict[int, dict[int, Values]]]:
     """The runs of each (variant, distribution)."""
     lists: dict[tuple[str, str], dict[int, dict[int, list[tuple[int, float]]]]] = {}
     for row in rows:

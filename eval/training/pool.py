@@ -7,14 +7,17 @@ import multiprocessing.connection
 import os
 import queue
 import signal
+import sys
 import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from typing import Any
 
 import torch
+from rich.console import Console
 
-from mrta_zoo.eval.ablation.training import Job, perform
+from mrta_zoo.eval.console import progress_bar
+from mrta_zoo.eval.training.job import Job, perform
 
 Report = Callable[[Job, float], None]
 """Is told which share of a job is done; 1 only once its rows are there."""
@@ -28,6 +31,24 @@ _stop: Any = None
 
 class _StoppedError(Exception):
     """The study ends early: another run failed, or the user interrupted it."""
+
+
+def train_all(jobs: Sequence[Job], missing: Sequence[Job], workers: int) -> None:
+    """Do what is missing, with a bar if there is a terminal, and a line on standard error for each run that ends."""
+    console = Console(file=sys.stderr, markup=False, highlight=False, emoji=False)
+    done = {job.folder: 1.0 for job in jobs if job not in missing}
+    with progress_bar() as progress:
+        bar = progress.add_task("runs", total=len(jobs), completed=len(done))
+
+        def report(job: Job, share: float) -> None:
+            done[job.folder] = share
+            progress.update(bar, completed=sum(done.values()))
+            if share == 1:
+                finished = sum(each == 1 for each in done.values())
+                line = f"{job.variant}, seed {job.seed}: trained and compared ({finished} of {len(jobs)} runs)"
+                (progress.console if progress.console.is_terminal else console).print(line, soft_wrap=True)
+
+        perform_all(missing, workers, report)
 
 
 def perform_all(jobs: Sequence[Job], workers: int, report: Report) -> None:

@@ -1,4 +1,4 @@
-"""The scenarios that trained variants are compared on: none of them is drawn in training."""
+"""The scenarios that trained networks are compared on: none of them is drawn in training."""
 
 from __future__ import annotations
 
@@ -15,8 +15,6 @@ Distribution = Literal["taptc", "uniform"]
 
 HELD_OUT_SEED = 20220526
 """Of a stream of random numbers that training, whose seeds are small, has nothing to do with."""
-ROBOTS = (1, 2, 4)
-"""From the most tasks a robot to the fewest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,10 +24,12 @@ class HeldOut:
     Attributes:
         tasks: of each scenario.
         count: scenarios of each distribution and number of robots.
+        robots: the numbers of robots.
     """
 
     tasks: int
     count: int
+    robots: tuple[int, ...]
 
     def __post_init__(self) -> None:
         if self.count < 2:

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.ablation.held_out import ROBOTS, Distribution, HeldOut
-from mrta_zoo.eval.ablation.rows import AblationRow
 from mrta_zoo.eval.rows_file import RowsFile
+from mrta_zoo.eval.training.held_out import Distribution, HeldOut
+from mrta_zoo.eval.training.rows import RunRow
 from mrta_zoo.io.records import write_records
 from mrta_zoo.policies.neural import load_policy
 from mrta_zoo.train import checkpoint
@@ -71,32 +71,30 @@ def perform(job: Job, tell: Tell) -> None:
     write_records(evaluate(job), job.rows_file)
 
 
-def evaluate(job: Job) -> list[AblationRow]:
+def evaluate(job: Job) -> list[RunRow]:
     """Greedy plans by the run's best policy (by validation), every one scored by the verifier."""
     policy = load_policy(job.folder)
     rows = []
     for distribution in job.distributions:
-        for robots in ROBOTS:
+        for robots in job.held_out.robots:
             scenarios = job.held_out.scenarios(distribution, robots)
             for index, (scenario, plan) in enumerate(zip(scenarios, policy.solve_batch(scenarios), strict=True)):
                 completed = verify(scenario, plan).completed
-                rows.append(
-                    AblationRow(job.variant, job.seed, distribution, robots, index, completed, scenario.num_tasks)
-                )
+                rows.append(RunRow(job.variant, job.seed, distribution, robots, index, completed, scenario.num_tasks))
     return rows
 
 
-def rows_of(job: Job) -> list[AblationRow]:
+def rows_of(job: Job) -> list[RunRow]:
     """The rows of a finished run.
 
     Raises:
         ConfigError: if they are not those that its job asks for.
     """
-    rows = RowsFile(job.rows_file, AblationRow).rows
+    rows = RowsFile(job.rows_file, RunRow).rows
     wanted = [
         (job.variant, job.seed, distribution, robots, index)
         for distribution in job.distributions
-        for robots in ROBOTS
+        for robots in job.held_out.robots
         for index in range(job.held_out.count)
     ]
     if [(row.variant, row.seed, row.distribution, row.robots, row.scenario) for row in rows] != wanted:

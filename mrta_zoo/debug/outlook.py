@@ -1,0 +1,151 @@
+"""What a robot has before it: every task, when it would be done, why it may not be had, and who else could do it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.mission import Mission
+from mrta_zoo.rules import MaskReason, Status, travel_time
+
+SortKey = Literal["rank", "distance", "finish", "slack", "deadline", "task"]
+"""By what tasks are listed: those that may be chosen first, then by the policy's probability or else by finish
+("rank"); or all of them by a column."""
+
+_AFTER = (MaskReason.CHOOSABLE, MaskReason.TOO_LATE, MaskReason.TAKEN, MaskReason.DEADLINE_PASSED)
+_REASONS, _STATUSES = list(MaskReason), list(Status)
+
+
+@dataclass(frozen=True, slots=True)
+class Prospect:
+    """A task as one robot has it before it.
+
+    Attributes:
+        task: the task.
+        distance: from where the robot is free next, in distance units.
+        travel: the time it needs to get there.
+        finish: when it would be done, were it the robot's next.
+        slack: deadline - finish; < 0 if it would be late.
+        deadline: of the task.
+        reason: why the robot may not choose it, or that it may.
+        status: of the task now.
+        taken_by: the robot that took it, None if it is free.
+        done: when that robot finishes it, None if it is free.
+        rival: the robot among the others that could be done first and in time, None if there is none or it is taken.
+        rival_finish: when that robot would be done, were it its next; None if there is none.
+        probability: the policy's, None if it has none.
+    """
+
+    task: int
+    distance: float
+    travel: float
+    finish: float
+    slack: float
+    deadline: float
+    reason: MaskReason
+    status: Status
+    taken_by: int | None
+    done: float | None
+    rival: int | None
+    rival_finish: float | None
+    probability: float | None
+
+    def __str__(self) -> str:
+        """What there is to say of it besides numbers: why it may not be chosen, or who else could do it."""
+        if self.taken_by is not None and self.done is not None:
+            doing = {
+                Status.ASSIGNED: f"robot {self.taken_by} on it until {self.done:.1f}",
+                Status.COMPLETED: f"done by robot {self.taken_by} at {self.done:.1f}",
+                Status.MISSED: f"late by robot {self.taken_by} at {self.done:.1f}",
+            }
+            return doing.get(self.status, f"taken by robot {self.taken_by}")
+        if self.reason == MaskReason.DEADLINE_PASSED:
+            return "deadline passed"
+        if self.reason == MaskReason.TOO_LATE:
+            return f"too late by {-self.slack:.1f}" if self.slack < 0 else "too late"
+        late = f"late by {-self.slack:.1f}; " if self.slack < 0 else ""
+        if self.rival is None or self.rival_finish is None:
+            return late + "nobody else in time"
+        return late + f"robot {self.rival} could by {self.rival_finish:.1f}"
+
+
+def outlook(
+    mission: Mission,
+    robot: int,
+    probabilities: Mapping[int, float] | None = None,
+    tasks: Sequence[int] | None = None,
+) -> list[Prospect]:
+    """Every task as `robot` has it before it when it is next free, in order of index.
+
+    Args:
+        mission: as it stands.
+        robot: the robot.
+        probabilities: its policy's, by task.
+        tasks: only these, in this order.
+
+    Raises:
+        ConfigError: if there is no such robot.
+    """
+    scenario = mission.scenario
+    if not 0 <= robot < scenario.num_robots:
+        raise ConfigError(f"there is no robot {robot}; expected a number from 0 to {scenario.num_robots - 1}")
+    which = np.arange(scenario.num_tasks) if tasks is None else np.array(tasks, dtype=np.intp)
+    dx, dy = (scenario.task_xy[which] - mission.position[robot]).T
+    travel = travel_time(dx, dy, scenario.speed[robot], np.sqrt)
+    finish, deadline = mission.finish_if[robot, which], scenario.deadline[which]
+    # Of the others, who could be done first: those that are retired could not.
+    others = mission.finish_if[:, which]
+    others[np.array(mission.retired)] = np.inf
+    others[robot] = np.inf
+    others[others > deadline] = np.inf
+    rival, soonest = others.argmin(axis=0), others.min(axis=0)
+    given = probabilities or {}
+    columns = zip(
+        which.tolist(), np.hypot(dx, dy).tolist(), travel.tolist(), finish.tolist(), (deadline - finish).tolist(),
+        deadline.tolist(), mission.reasons(robot)[which].tolist(), mission.status[which].tolist(),
+        mission.taken_by[which].tolist(), mission.finish[which].tolist(), rival.tolist(), soonest.tolist(), strict=True,
+    )  # fmt: skip
+    return [
+        Prospect(
+            task=task,
+            distance=distance,
+            travel=time,
+            finish=end,
+            slack=slack,
+            deadline=due,
+            reason=_REASONS[reason],
+            status=_STATUSES[status],
+            taken_by=taken_by if taken_by >= 0 else None,
+            done=done if taken_by >= 0 else None,
+            rival=who if taken_by < 0 and first < np.inf else None,
+            rival_finish=first if taken_by < 0 and first < np.inf else None,
+            probability=None if probabilities is None else given.get(task, 0.0),
+        )
+        for task, distance, time, end, slack, due, reason, status, taken_by, done, who, first in columns
+    ]
+
+
+def ranked(prospects: list[Prospect], by: SortKey = "rank") -> list[Prospect]:
+    """The tasks in order, ties by index.
+
+    Raises:
+        ConfigError: if there is no such order.
+    """
+    if by not in get_args(SortKey):
+        raise ConfigError(f"there is no order {by!r}; expected one of {', '.join(get_args(SortKey))}")
+    if by != "rank":
+        return sorted(prospects, key=lambda each: getattr(each, by))
+    return sorted(
+        prospects,
+        key=lambda each: (
+            _AFTER.index(each.reason), -(each.probability or 0.0), _over(each.status), each.finish,
+        ),
+    )  # fmt: skip
+
+
+def _over(status: Status) -> bool:
+    return status in (Status.COMPLETED, Status.MISSED)

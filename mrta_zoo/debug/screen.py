@@ -1,0 +1,114 @@
+"""A session as text on a terminal of any size, or on none."""
+
+from __future__ import annotations
+
+import numpy as np
+from rich import box
+from rich.console import Console, Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from mrta_zoo.debug.session import Session
+from mrta_zoo.rules import Status
+
+AROUND = 11
+"""Lines of a screen besides the rows of the table: the header, the table's title, head and foot, message and prompt."""
+LEAST_ROWS = 3
+BETWEEN = 2
+"""Columns between two of a table."""
+STYLES = {"advised": "bold green", "made": "yellow", "plain": "", "faint": "bright_black"}
+NEXT_SHOWN = 8
+
+
+def screen(session: Session, rows: int, width: int, message: str = "") -> Group:
+    """Everything there is to be seen, in so many columns and with so many rows of the table that is looked at."""
+    parts: list[RenderableType] = [*header(session), Text()]
+    parts += table(session, rows, width)
+    parts.append(Text(message, style="bold", no_wrap=True, overflow="ellipsis"))
+    return Group(*parts)
+
+
+def fit(console: Console) -> int:
+    """How many rows of a table a screen has room for."""
+    return max(console.height - AROUND, LEAST_ROWS)
+
+
+def header(session: Session) -> list[RenderableType]:
+    """Four lines: the mission, how it stands, who is to choose and what its policy thinks, and who is next."""
+    stepper = session.stepper
+    mission, scenario = stepper.mission, stepper.scenario
+    count = np.bincount(mission.status, minlength=len(Status))
+    place = f"decision {stepper.position}" + (f"/{len(stepper)}" if stepper.position < len(stepper) else "")
+    lines = [
+        (f"{scenario.name}: {scenario.num_tasks} tasks, {scenario.num_robots} robots, {stepper.mask_rule}", "bold"),
+        (
+            f"time {mission.time:.1f}  {place}  {count[Status.COMPLETED]} completed, {count[Status.ASSIGNED]} under "
+            f"way, {count[Status.MISSED]} missed, {count[Status.ACTIVE]} open",
+            "",
+        ),
+    ]
+    if stepper.done:
+        lines += [(session.where(), "bold"), ("", "")]
+    else:
+        lines += [(_turn(session), "bold cyan"), (_queue(session), "bright_black")]
+    return [Text(line, style=style, no_wrap=True, overflow="ellipsis") for line, style in lines]
+
+
+def table(session: Session, rows: int, width: int) -> list[RenderableType]:
+    """The table that is looked at: its title, a page of it, and which page that is."""
+    listing, view = session.listing(), session.view
+    pages = max(-(-len(listing.rows) // rows), 1)
+    view.page = min(view.page, pages - 1)
+    shown = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
+    first = view.page * rows
+    page = listing.rows[first : first + rows]
+    widths = [
+        max(len(cell) for cell in (column, *(row.cells[index] for row in listing.rows)))
+        for index, column in enumerate(listing.columns)
+    ]
+    room = width - sum(widths[:-1]) - BETWEEN * (len(widths) - 1)
+    widths[-1] = max(min(widths[-1], room), 1)
+    for column, needed in zip(listing.columns, widths, strict=True):
+        left = column in listing.left
+        shown.add_column(column, justify="left" if left else "right", no_wrap=True, overflow="ellipsis", width=needed)
+    for row in page:
+        shown.add_row(*(Text(cell) for cell in row.cells), style=STYLES[row.tone])
+    foot = f"page {view.page + 1} of {pages}" + ("" if view.page == pages - 1 else ", n: next") if pages > 1 else ""
+    return [Text(listing.title, style="italic"), shown, Text(foot, style="bright_black")]
+
+
+def prompt(session: Session) -> str:
+    """What to ask for a command with."""
+    advice = session.stepper.advice
+    if advice is None:
+        return "? help, q quit > "
+    chosen = "stay" if advice.task is None else f"task {advice.task}"
+    return f"Enter: {chosen}, or number; b back, f forward, ? help, q quit > "
+
+
+def _turn(session: Session) -> str:
+    stepper = session.stepper
+    robot, scenario = stepper.robot, stepper.scenario
+    x, y = stepper.mission.position[robot]
+    text = (
+        f"robot {robot} chooses: at ({x:.1f}, {y:.1f}), capacity {scenario.capacity[robot]:g}, "
+        f"speed {scenario.speed[robot]:g}"
+    )
+    if (advice := stepper.advice) is None:
+        return text
+    what = "stay" if advice.task is None else f"task {advice.task}"
+    return f"{text}; {stepper.method or 'policy'}: {what}"
+
+
+def _queue(session: Session) -> str:
+    """Who chooses after the acting robot."""
+    mission = session.stepper.mission
+    waiting = sorted(
+        (ready, robot)
+        for robot, ready in enumerate(mission.ready)
+        if not mission.retired[robot] and robot != mission.actor
+    )
+    if not waiting:
+        return "the only robot left"
+    text = ", ".join(f"{robot} at {ready:.1f}" for ready, robot in waiting[:NEXT_SHOWN])
+    return f"next robots: {text}" + (", …" if len(waiting) > NEXT_SHOWN else "")

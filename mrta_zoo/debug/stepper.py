@@ -1,0 +1,281 @@
+"""Going through an episode one decision at a time, forth and back, with the advice of a policy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from mrta_zoo.debug.advisors import Advisor, make_advisor
+from mrta_zoo.debug.outlook import Prospect, SortKey, outlook, ranked
+from mrta_zoo.debug.recorder import overrule
+from mrta_zoo.errors import ActionError, MrtaError
+from mrta_zoo.io import read_trace, write_trace
+from mrta_zoo.io.source import StrPath
+from mrta_zoo.mission import Mission
+from mrta_zoo.plan import Plan
+from mrta_zoo.policies.protocol import Policy, Solver
+from mrta_zoo.rules import MaskRule
+from mrta_zoo.scenario import Scenario
+from mrta_zoo.trace import Choice, Trace, after, make
+
+
+class Stepper:
+    """An episode under way, in which every decision can be looked at, taken back and taken otherwise.
+
+    It stands before one decision, or at the end. What was chosen after it, before somebody went back, is kept until
+    another choice is made here. All that can be seen is that of a fresh mission in which the same choices are made.
+
+    >>> stepper = Stepper(scenario, "capam-plus")
+    >>> stepper.follow()                  # the policy's choice
+    >>> stepper.take(7)                   # another one
+    >>> stepper.back()
+    >>> for prospect in stepper.outlook()[:3]:
+    ...     print(prospect.task, prospect.finish, prospect.slack, prospect.probability, prospect)
+
+    Args:
+        scenario: the mission.
+        method: whose advice to hear: a name or path that `registry.make_solver` knows, a policy, a solver, a plan, or
+            an `Advisor`; None for nobody's.
+        **options: see `advisors.make_advisor`.
+
+    Attributes:
+        scenario: the scenario.
+        mask_rule: what robots may choose.
+        mission: as it stands before this decision. Neither to be changed nor kept: forward, the same one goes on.
+        position: how many decisions have been made so far.
+
+    Raises:
+        MrtaError: if there is no such method, or an option is out of range.
+    """
+
+    def __init__(
+        self, scenario: Scenario, method: str | Policy | Solver | Plan | Advisor | None = None, **options: Any
+    ) -> None:
+        advisor = method if isinstance(method, Advisor) or method is None else make_advisor(scenario, method, **options)
+        rule: MaskRule = options.get("mask_rule") or ("feasible" if advisor is None else advisor.mask_rule)
+        self._open(Trace(scenario, (), rule), advisor)
+
+    @classmethod
+    def resume(cls, trace: Trace, advisor: Advisor | None = None) -> Stepper:
+        """Go through an episode that there is already, from its bookmark, or else from its start.
+
+        Args:
+            trace: the episode. Its probabilities are shown as they are.
+            advisor: is asked where the trace says nothing; None for nobody.
+        """
+        stepper = cls.__new__(cls)
+        stepper._open(trace, advisor)
+        stepper.go_to(trace.bookmark or 0)
+        return stepper
+
+    @classmethod
+    def load(cls, path: StrPath, advisor: Advisor | None = None) -> Stepper:
+        """Go on with a saved session, or any other trace.
+
+        Raises:
+            MrtaError: if the file is missing or malformed.
+        """
+        return cls.resume(read_trace(path), advisor)
+
+    def _open(self, trace: Trace, advisor: Advisor | None) -> None:
+        self.scenario, self.mask_rule = trace.scenario, trace.mask_rule
+        self._trace, self._advisor = trace, advisor
+        self._choices = list(trace.choices)
+        # Of the choices that there are, by decision: the advice, and the state in which a decision finds the advisor.
+        self._advice = {index: _advice_in(choice) for index, choice in enumerate(trace.choices)}
+        self._states: dict[int, Any] = {} if advisor is None else {0: advisor.begin()}
+        self.position = 0
+        self.mission = Mission(self.scenario, self.mask_rule)
+
+    def __len__(self) -> int:
+        """The number of decisions made, including those made after this one before somebody went back."""
+        return len(self._choices)
+
+    @property
+    def method(self) -> str:
+        """Name of the policy or solver that advises; empty if there is none."""
+        return self._trace.method if self._advisor is None else self._advisor.method
+
+    @property
+    def robot(self) -> int:
+        """Who is to choose; -1 at the end."""
+        return self.mission.actor
+
+    @property
+    def done(self) -> bool:
+        """Whether the mission is over."""
+        return self.mission.done
+
+    @property
+    def made(self) -> Choice | None:
+        """What was chosen here before somebody went back; None if nothing was."""
+        return self._choices[self.position] if self.position < len(self._choices) else None
+
+    @property
+    def advice(self) -> Choice | None:
+        """What the policy would choose; None at the end, or if there is no policy."""
+        if self.position not in self._advice:
+            if self.done or self._advisor is None:
+                return None
+            self._ask()
+        return self._advice[self.position]
+
+    def outlook(self, robot: int | None = None, by: SortKey = "rank") -> list[Prospect]:
+        """Every task as a robot has it before it, by default the one that is to choose.
+
+        Raises:
+            ActionError: at the end, if no robot is named.
+            MrtaError: if there is no such robot or order.
+        """
+        if robot is None and self.done:
+            raise ActionError("the mission is over, and no robot is to choose; name one, or go back")
+        robot = self.robot if robot is None else robot
+        advice = self.advice if robot == self.robot else None
+        probabilities = None if advice is None else advice.probabilities
+        return ranked(outlook(self.mission, robot, probabilities), by)
+
+    def follow(self) -> Choice:
+        """Choose as the policy would.
+
+        Raises:
+            ActionError: if the mission is over, or there is no policy.
+        """
+        self._check_not_over()
+        if self.advice is None:
+            raise ActionError("there is no policy to follow here; name a task")
+        return self._choose(self.advice)
+
+    def take(self, task: int) -> Choice:
+        """Let the robot take this task, whatever the policy would do.
+
+        Raises:
+            ActionError: if the mission is over or the robot may not take it; nothing is changed then.
+        """
+        self._check_not_over()
+        return self._choose(Choice(task) if self.advice is None else overrule(self.advice, task))
+
+    def stay(self) -> Choice:
+        """Let the robot stay where it is for good, which the environment does not offer.
+
+        Raises:
+            ActionError: if the mission is over.
+        """
+        self._check_not_over()
+        return self._choose(Choice(None) if self.advice is None else overrule(self.advice, None))
+
+    def back(self, decisions: int = 1) -> None:
+        """Take decisions back, so many or all that there are."""
+        self.go_to(max(self.position - decisions, 0))
+
+    def forward(self, decisions: int = 1) -> None:
+        """Go on: make the choices again that were made before somebody went back, then follow the policy.
+
+        Raises:
+            ActionError: if the mission is over, or there is no policy to follow.
+        """
+        self._check_not_over()
+        for _ in range(decisions):
+            if self.done:
+                return
+            if (made := self.made) is None:
+                self.follow()
+            else:
+                make(self.mission, made, self.position)
+                self.position += 1
+
+    def go_to(self, position: int) -> None:
+        """Stand before that decision, counted from 0, or at the end if the mission is over before it.
+
+        Raises:
+            ActionError: if the number is negative, or there is no policy to follow as far as that.
+        """
+        if position < 0:
+            raise ActionError(f"there is no decision {position}; expected a number from 0")
+        if position < self.position:
+            self.mission = after(self.scenario, self._choices[:position], self.mask_rule)
+            self.position = position
+        elif position > self.position and not self.done:
+            self.forward(position - self.position)
+
+    def jump(self, robot: int) -> None:
+        """Go on to the next decision of this robot, or stay here if it has none.
+
+        Raises:
+            ActionError: if it has none, or there is no policy to follow as far as that.
+        """
+        if not 0 <= robot < self.scenario.num_robots:
+            raise ActionError(f"there is no robot {robot}; expected a number from 0 to {self.scenario.num_robots - 1}")
+        here = self.position
+        try:
+            while not self.done and not self.mission.retired[robot]:
+                self.forward()
+                if self.robot == robot:
+                    return
+        except MrtaError:
+            self.go_to(here)
+            raise
+        self.go_to(here)
+        raise ActionError(f"robot {robot} does not choose again after this")
+
+    def finish(self) -> None:
+        """Go on to the end of the mission.
+
+        Raises:
+            ActionError: if there is no policy to follow as far as that.
+        """
+        while not self.done:
+            self.forward()
+
+    def trace(self) -> Trace:
+        """All decisions there are, with a bookmark at this one."""
+        source = self._trace if self._advisor is None else self._advisor
+        return Trace(
+            self.scenario, tuple(self._choices), self.mask_rule, source.method, source.decode, source.seed,
+            source.bound if all(choice.advice is None for choice in self._choices) else None, self.position,
+        )  # fmt: skip
+
+    def save(self, path: StrPath) -> None:
+        """Write `trace` as JSON, for `load` and for everything else that reads traces.
+
+        Raises:
+            PlanError: if the file cannot be written.
+        """
+        write_trace(self.trace(), path)
+
+    def _check_not_over(self) -> None:
+        if self.done:
+            raise ActionError(f"the mission is over, after {self.position} decisions; go back to choose otherwise")
+
+    def _choose(self, choice: Choice) -> Choice:
+        made = self.made
+        if choice.task is None:
+            self.mission.stay()
+        else:
+            self.mission.assign(choice.task)
+        if made is None or made.task != choice.task:  # another course from here on
+            here = self.position
+            self._choices[here:] = [choice]
+            self._advice = {index: advice for index, advice in self._advice.items() if index <= here}
+            self._states = {index: state for index, state in self._states.items() if index <= here + 1}
+        self.position += 1
+        return choice
+
+    def _ask(self) -> None:
+        """Hear the advice for this decision; from a policy that remembers, first for those it was not asked for."""
+        assert self._advisor is not None
+        begin = max(index for index in self._states if index <= self.position)
+        if self._advisor.memoryless:
+            state = self._states[max(self._states)]
+            self._advice[self.position], state = self._advisor.advise(self.mission, state)
+            self._states = {0: state}
+            return
+        mission = after(self.scenario, self._choices[:begin], self.mask_rule)
+        for index in range(begin, self.position + 1):
+            advice, self._states[index + 1] = self._advisor.advise(mission, self._states[index])
+            self._advice.setdefault(index, advice)
+            if index < self.position:
+                make(mission, self._choices[index], index)
+
+
+def _advice_in(choice: Choice) -> Choice:
+    """What the policy said at a decision that was recorded."""
+    return choice if choice.advice is None else Choice(choice.advice, choice.probabilities)

@@ -1,0 +1,76 @@
+"""How objects show themselves in a notebook: a table, and a small map as SVG. Needs no library."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from html import escape
+
+from mrta_zoo.palette import FAINT, GROUND, URGENCY, blend, robot_colour
+
+MOST_ROWS = 20
+"""Of a table; the others are counted."""
+_SIDE = 320.0
+_CELL = "text-align:left;padding:2px 12px 2px 0"
+
+
+def table(title: str, header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    """A table under a title; floats are rounded to one decimal place.
+
+    Args:
+        title: plain text, as are all cells.
+        header: names of the columns.
+        rows: their values; of more than `MOST_ROWS` the first are shown.
+    """
+    every = list(rows)
+    lines = [f'<div><b>{escape(title)}</b></div><table style="border-collapse:collapse"><tr>']
+    lines += [f'<th style="{_CELL}">{escape(name)}</th>' for name in header]
+    lines.append("</tr>")
+    for row in every[:MOST_ROWS]:
+        cells = (f'<td style="{_CELL}">{escape(_text(value))}</td>' for value in row)
+        lines.append(f"<tr>{''.join(cells)}</tr>")
+    lines.append("</table>")
+    if len(every) > MOST_ROWS:
+        lines.append(f"<div>and {len(every) - MOST_ROWS} more</div>")
+    return "".join(lines)
+
+
+def map_of(
+    map_size: tuple[float, float],
+    tasks: Sequence[tuple[float, float]],
+    deadlines: Sequence[float],
+    robots: Sequence[tuple[float, float]],
+) -> str:
+    """A map as SVG: tasks, the redder the earlier their deadline, and the squares where robots start.
+
+    Args:
+        map_size: width and height in distance units, > 0.
+        tasks: their places.
+        deadlines: one for each task, > 0.
+        robots: their places.
+    """
+    scale = _SIDE / max(map_size)
+    width, height = (scale * side for side in map_size)
+    radius = max(1.5, min(4.0, 40.0 / len(tasks) ** 0.5))
+    horizon = max(deadlines)
+    lines = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width + 20:.0f}" height="{height + 20:.0f}" '
+        f'viewBox="-10 -10 {width + 20:.1f} {height + 20:.1f}">'
+        f'<rect x="-10" y="-10" width="{width + 20:.1f}" height="{height + 20:.1f}" fill="{GROUND}"/>'
+    ]
+    for task, ((x, y), deadline) in enumerate(zip(tasks, deadlines, strict=True)):
+        lines.append(
+            f'<circle cx="{scale * x:.1f}" cy="{height - scale * y:.1f}" r="{radius:.1f}" '
+            f'fill="{blend(URGENCY, deadline / horizon)}" stroke="{FAINT}" stroke-width="0.7">'
+            f"<title>task {task}, deadline {deadline:g}</title></circle>"
+        )
+    for robot, (x, y) in enumerate(robots):
+        lines.append(
+            f'<rect x="{scale * x - 4:.1f}" y="{height - scale * y - 4:.1f}" width="8" height="8" '
+            f'fill="{robot_colour(robot)}" stroke="#ffffff"><title>robot {robot}</title></rect>'
+        )
+    lines.append("</svg>")
+    return "".join(lines)
+
+
+def _text(value: object) -> str:
+    return f"{value:.1f}" if isinstance(value, float) else str(value)

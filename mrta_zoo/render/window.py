@@ -1,0 +1,67 @@
+"""The window of render mode ``"human"``.
+
+Needs pygame (``mrta_zoo[render]``) and a display.
+"""
+
+from __future__ import annotations
+
+import pygame
+
+from mrta_zoo.errors import ConfigError
+
+
+class Window:
+    """Shows one picture after another; opens with the first.
+
+    Once its user has closed it, it stays closed: showing a picture then does nothing, and the mission goes on unseen.
+
+    Args:
+        title: in its bar.
+        fps: pictures a second at most, > 0; `show` waits accordingly.
+    """
+
+    def __init__(self, title: str, fps: int) -> None:
+        self._title, self._fps = title, fps
+        self._screen: pygame.Surface | None = None
+        self._clock = pygame.time.Clock()
+        self._dismissed = False
+
+    def __reduce__(self) -> tuple[type[Window], tuple[str, int]]:
+        return type(self), (self._title, self._fps)  # the copy of an environment opens a window of its own
+
+    def show(self, picture: pygame.Surface) -> None:
+        """Show `picture`, and answer what the window system has sent meanwhile.
+
+        Raises:
+            ConfigError: if there is no display.
+        """
+        if self._dismissed:
+            return
+        if self._screen is None:
+            self._screen = _open(self._title, picture.get_size())
+        if any(event.type == pygame.QUIT for event in pygame.event.get()):
+            self.close()
+            self._dismissed = True
+            return
+        self._screen.blit(picture, (0, 0))
+        pygame.display.flip()
+        self._clock.tick(self._fps)
+
+    def close(self) -> None:
+        """Close the window, if it is open."""
+        if self._screen is not None:
+            self._screen = None
+            pygame.display.quit()
+
+
+def _open(title: str, size: tuple[int, int]) -> pygame.Surface:
+    try:
+        pygame.display.init()
+        screen = pygame.display.set_mode(size)
+    except pygame.error as error:
+        raise ConfigError(
+            f"render_mode 'human' cannot open a window: {error}; expected a display (or, for tests, the environment "
+            "variable SDL_VIDEODRIVER=dummy); render_mode 'rgb_array' needs none"
+        ) from None
+    pygame.display.set_caption(title)
+    return screen

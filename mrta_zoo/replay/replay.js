@@ -1,0 +1,192 @@
+"use strict";
+// The page was given the scenario (`place`) and one or two episodes of it. All times come from there; what is worked out
+// here is only what holds at the moment shown. Maps are in map.js, charts in charts.js.
+const { place, episodes, colours } = JSON.parse(document.getElementById("data").textContent);
+const SIDE_COLOURS = ["#1864ab", "#c2255c"];
+const REASONS = ["to choose from", "taken", "deadline passed", "too late"]; // by rules.MaskReason
+const WHOLE_PLAY = 40; // seconds that an episode takes at speed 1
+const MANY_ROBOTS = 20; // with more there is less text, and trails are cut
+
+const byId = (id) => document.getElementById(id);
+const robotColour = (robot) => colours.robots[robot % colours.robots.length];
+const horizon = Math.max(...place.tasks.map((task) => task[2]));
+const end = Math.max(horizon, ...episodes.map((episode) => episode.makespan));
+const digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(end))));
+const number = (value) => value.toFixed(digits);
+const many = place.robots.length > MANY_ROBOTS;
+
+function element(tag, text = "", attributes = {}) {
+  const made = document.createElement(tag);
+  made.textContent = text;
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  return made;
+}
+
+// The moment shown: a time and, for each side, the last decision made by then. Of several made at the same time, those
+// after it are yet to be made. `side` is the one looked at last, `looked` the task pointed at in its table.
+const moment = { time: 0, last: [], side: 0, looked: null };
+
+class Side {
+  constructor(index, episode) {
+    this.index = index;
+    this.episode = episode;
+    this.times = episode.decisions.map((decision) => decision.time);
+    this.visitOf = new Map(episode.routes.flat().map((visit) => [visit[1], visit])); // by decision
+    const box = byId("side").content.cloneNode(true).firstElementChild;
+    box.id = `side-${index}`;
+    const part = (name) => box.querySelector(`.${name}`);
+    document.querySelector("main").append(box);
+    part("swatch").style.background = SIDE_COLOURS[index];
+    part("method").textContent = episode.method;
+    part("score").textContent = `${episode.completed} of ${place.tasks.length} completed, cost ` +
+      `${episode.cost.toFixed(2)}, makespan ${number(episode.makespan)}`;
+    this.now = part("now");
+    this.decision = part("decision");
+    this.decision.classList.toggle("certain", episode.decisions.every(({ candidates }) =>
+      candidates.every((candidate) => candidate[5] === null)));
+    this.map = new MapView(part("map"));
+    const visits = episode.routes.flatMap((route, robot) => route.map((visit) => ({ robot, visit })));
+    this.gantt = new Gantt(part("gantt"), visits, (decision) => pick(index, decision));
+    this.strip(byId("time").appendChild(element("div", "", { class: "strip", id: `strip-${index}` })));
+  }
+
+  /** A tick for each decision, under the slider. */
+  strip(strip) {
+    this.episode.decisions.forEach(({ time, robot }, index) => {
+      strip.append(element("i", "", { style: `left: ${(100 * time) / end}%; background: ${robotColour(robot)}`,
+        title: `decision ${index + 1}: robot ${robot} at ${number(time)}` }));
+    });
+    strip.addEventListener("click", ({ clientX }) => { // ticks are thin: the nearest is meant
+      const { left, width } = strip.getBoundingClientRect(), time = (end * (clientX - left)) / width;
+      const distance = this.times.map((each) => Math.abs(each - time));
+      if (distance.length > 0) pick(this.index, distance.indexOf(Math.min(...distance)));
+    });
+  }
+
+  draw() {
+    const last = moment.last[this.index], decision = this.episode.decisions[last];
+    const taken = this.episode.routes.map((route) => route.filter((visit) => visit[1] <= last));
+    const looked = moment.side === this.index ? moment.looked : null;
+    this.map.draw(moment.time, taken, decision ? decision.robot : -1, looked);
+    if (decision) this.gantt.mark(decision.robot, decision.time, this.visitOf.get(last)?.[4] ?? end);
+    this.gantt.moveTo(moment.time);
+    const completed = taken.flat().filter((visit) => visit[5] && visit[4] <= moment.time).length;
+    this.now.textContent = `${completed} completed by now`;
+    if (this.shown !== last) this.drawDecision(last, decision);
+    this.shown = last;
+  }
+
+  drawDecision(last, decision) {
+    if (!decision) {
+      this.decision.replaceChildren(element("p", "No decision has been made yet.", { class: "faint" }));
+      return;
+    }
+    const what = decision.task === null ? "stays for good" : `takes task ${decision.task}`;
+    const advice = decision.advice === null ? "" : `; the policy would have taken task ${decision.advice}`;
+    const table = element("table"), head = element("tr"), body = element("tbody");
+    const columns = { task: "", probability: "words likely", distance: "wide", finish: "", due: "wide", slack: "",
+      "": "words" };
+    for (const [name, kind] of Object.entries(columns)) head.append(element("th", name, { class: kind }));
+    body.append(...decision.candidates.map((candidate) => this.row(candidate, decision)));
+    table.append(head, body);
+    this.decision.replaceChildren(
+      element("b", `Decision ${last + 1} of ${this.times.length}: robot ${decision.robot} ${what} at ` +
+        `${number(decision.time)}${advice}`),
+      element("p", decision.reasons.map((count, reason) => `${count} ${REASONS[reason]}`).join(", "), { class: "faint" }),
+      table,
+    );
+  }
+
+  row([task, distance, finish, reason, note, probability], decision) {
+    const due = place.tasks[task][2], chosen = task === decision.task;
+    const notes = [task === decision.advice && "the policy's choice", note].filter(Boolean).join("; ");
+    const row = element("tr", "", { class: chosen ? "chosen" : reason ? "barred" : "", "data-task": task });
+    const likely = element("td", "", { class: "words likely" });
+    if (probability !== null && !reason) {
+      likely.textContent = `${(100 * probability).toFixed(1)} %`;
+      likely.style.setProperty("--share", `${100 * probability}%`);
+    }
+    const cells = [[task, ""], null, [number(distance), "wide"], [number(finish), ""], [number(due), "wide"],
+      [number(due - finish), ""], [notes, "words note"]];
+    row.append(...cells.map((cell) => cell === null ? likely : element("td", cell[0], { class: cell[1] })));
+    row.title = notes; // in case it is cut off
+    row.addEventListener("mouseenter", () => look(this.index, task));
+    row.addEventListener("mouseleave", () => look(this.index, null));
+    return row;
+  }
+
+  /** The last decision made at or before a time, -1 if there is none. */
+  lastBy(time) {
+    return this.times.findLastIndex((each) => each <= time);
+  }
+}
+
+// What moves the moment.
+function go(time) {
+  moment.time = Math.min(Math.max(time, 0), end);
+  moment.last = sides.map((side) => side.lastBy(moment.time));
+  draw();
+}
+function pick(index, decision) {
+  moment.time = sides[index].times[decision];
+  moment.last = sides.map((side) => side.lastBy(moment.time));
+  moment.last[index] = decision;
+  moment.side = index;
+  location.replace(`#${decision + 1}/${index + 1}`); // so that the address can be passed on
+  draw();
+}
+/** To the decision before or after, on the side looked at last. */
+function step(by) {
+  const next = moment.last[moment.side] + by;
+  if (next >= 0 && next < sides[moment.side].times.length) pick(moment.side, next);
+}
+/** Point at a task on the map; null points at none. */
+function look(index, task) {
+  moment.side = index;
+  moment.looked = task;
+  sides[index].draw();
+}
+
+let playing = null; // the time stamp of the last picture while playing
+function play() {
+  if (playing === null && moment.time >= end) go(0);
+  playing = playing === null ? performance.now() : null;
+  byId("play").textContent = playing === null ? "play" : "pause";
+  if (playing !== null) requestAnimationFrame(animate);
+}
+function animate(stamp) {
+  if (playing === null) return;
+  go(moment.time + (Math.max(stamp - playing, 0) / 1000) * (end / WHOLE_PLAY) * Number(byId("speed").value));
+  playing = stamp;
+  if (moment.time >= end) play(); else requestAnimationFrame(animate);
+}
+
+function draw() {
+  byId("slider").value = moment.time;
+  byId("clock").textContent = `time ${number(moment.time)}`;
+  for (const side of sides) side.draw();
+  progress.moveTo(moment.time);
+}
+
+document.querySelector("h1").textContent = place.name;
+byId("about").textContent = `${place.tasks.length} tasks, ${place.robots.length} robots, mask rule ` +
+  [...new Set(episodes.map((episode) => episode.mask_rule))].join(" and ");
+document.querySelector("main").className = `${episodes.length > 1 ? "pair" : ""} ${many ? "many" : ""}`;
+const sides = episodes.map((episode, index) => new Side(index, episode));
+const progress = new Progress(byId("progress"), episodes, go);
+byId("slider").max = end;
+byId("slider").addEventListener("input", ({ target }) => go(Number(target.value)));
+byId("play").addEventListener("click", play);
+byId("previous").addEventListener("click", () => step(-1));
+byId("next").addEventListener("click", () => step(1));
+window.addEventListener("resize", draw);
+document.addEventListener("keydown", (event) => {
+  if (event.target.matches("input, select, button")) return; // they have uses of their own for these keys
+  const action = { " ": play, ArrowLeft: () => step(-1), ArrowRight: () => step(1) }[event.key];
+  if (action) { event.preventDefault(); action(); }
+});
+const [decision, side = 1] = location.hash.slice(1).split("/").map(Number);
+const marked = episodes.findIndex((episode) => episode.decisions[episode.bookmark]);
+if (episodes[side - 1]?.decisions[decision - 1]) pick(side - 1, decision - 1);
+else if (marked >= 0) pick(marked, episodes[marked].bookmark);
+else go(0);

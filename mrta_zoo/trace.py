@@ -1,0 +1,202 @@
+"""An episode, decision by decision: what there was to do, who chose what, and what its policy thought of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from mrta_zoo.errors import ActionError, PlanError
+from mrta_zoo.mission import Mission
+from mrta_zoo.plan import Plan
+from mrta_zoo.rules import MaskRule, check_mask_rule
+from mrta_zoo.scenario import Scenario
+from mrta_zoo.verify import verify
+
+TOLERANCE = 1e-3
+"""By how much probabilities may exceed 1 in sum: they are rounded."""
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """What was chosen at one decision; whose it was, and when, follows from the choices before it.
+
+    Attributes:
+        task: the task taken; None if the robot stays where it is for good, although it may choose. The environment
+            has no such action, but a plan may end a robot's route at any time.
+        probabilities: the policy's, by task, each from 0 to 1; tasks of next to none may be left out. None if the
+            policy has none.
+        advice: the task that the policy would have taken, where somebody else decided; None where it decided itself.
+
+    Raises:
+        PlanError: if a probability is out of range, or they exceed 1 in sum.
+    """
+
+    task: int | None
+    probabilities: Mapping[int, float] | None = field(default=None, hash=False)
+    advice: int | None = None
+
+    def __post_init__(self) -> None:
+        if self.probabilities is None:
+            return
+        for task, probability in self.probabilities.items():
+            if not 0 <= probability <= 1:
+                raise PlanError(f"the probability of task {task} is {probability:g}; expected a number from 0 to 1")
+        if (total := sum(self.probabilities.values())) > 1 + TOLERANCE:
+            raise PlanError(f"the probabilities add up to {total:g}; expected at most 1")
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """A choice with what follows from those before it.
+
+    Attributes:
+        index: number of the decision, from 0.
+        time: when it was made, in time units.
+        robot: who made it.
+        choice: what was chosen.
+    """
+
+    index: int
+    time: float
+    robot: int
+    choice: Choice
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """The scenario of an episode and every choice made in it, from the start, maybe not to the end.
+
+    Arrivals, statuses, masks and their reasons are not stored: `replay` shows the mission before each decision.
+
+    Attributes:
+        scenario: the scenario.
+        choices: in the order in which they were made.
+        mask_rule: what robots could choose, see `rules.MaskRule`.
+        method: name of the policy or solver that chose, or advised; empty if none did.
+        decode: how a learned policy chose, such as "greedy"; empty if there is nothing to say.
+        seed: of all draws, None if none was given.
+        bound: as in `Plan`.
+        bookmark: the decision to look at first, from 0 to the number of choices; None if there is none.
+
+    Raises:
+        PlanError: if a choice is one that its robot did not have; the message names the decision.
+        ConfigError: if there is no such mask rule.
+    """
+
+    scenario: Scenario
+    choices: tuple[Choice, ...]
+    mask_rule: MaskRule = "feasible"
+    method: str = ""
+    decode: str = ""
+    seed: int | None = None
+    bound: int | None = None
+    bookmark: int | None = None
+
+    def __post_init__(self) -> None:
+        check_mask_rule(self.mask_rule)
+        object.__setattr__(self, "choices", tuple(self.choices))
+        tasks = range(self.scenario.num_tasks)
+        for index, choice in enumerate(self.choices):
+            for task in (choice.advice, *(choice.probabilities or ())):
+                if task is not None and task not in tasks:
+                    raise PlanError(f"decision {index} names task {task}; tasks are numbered 0 to {len(tasks) - 1}")
+        for _ in self.replay():  # every choice must be legal
+            pass
+        if self.bookmark is not None and not 0 <= self.bookmark <= len(self.choices):
+            raise PlanError(f"the bookmark is {self.bookmark}; expected a number from 0 to {len(self.choices)}")
+
+    @classmethod
+    def of_plan(cls, scenario: Scenario, plan: Plan, mask_rule: MaskRule | None = None) -> Trace:
+        """The episode in which every robot follows its route, and stays where it ends.
+
+        Args:
+            scenario: what was planned.
+            plan: the plan.
+            mask_rule: by default the tightest that allows what the plan does.
+
+        Raises:
+            PlanError: if the plan does not fit the scenario, or the rule forbids a part of it.
+        """
+        mission = Mission(scenario, tightest_rule(scenario, plan) if mask_rule is None else mask_rule)
+        choices: list[Choice] = []
+        while not mission.done:
+            robot = mission.actor
+            done = len(mission.routes[robot])
+            choice = Choice(plan.routes[robot][done] if done < len(plan.routes[robot]) else None)
+            make(mission, choice, len(choices))
+            choices.append(choice)
+        left = [robot for robot, route in enumerate(plan.routes) if len(mission.routes[robot]) < len(route)]
+        if left:
+            robot = left[0]
+            raise PlanError(
+                f"mask rule {mission.mask_rule!r} leaves robot {robot} nothing to choose where the plan goes on with "
+                f"task {plan.routes[robot][len(mission.routes[robot])]}; expected a rule that the plan keeps to"
+            )
+        return cls(scenario, tuple(choices), mission.mask_rule, plan.method, bound=plan.bound)
+
+    def replay(self) -> Iterator[tuple[Mission, Decision]]:
+        """The mission before each decision, with the decision. It is one mission that goes on: do not keep it."""
+        mission = Mission(self.scenario, self.mask_rule)
+        for index, choice in enumerate(self.choices):
+            if mission.done:
+                raise PlanError(f"decision {index} comes after the end of the mission; expected {index} decisions")
+            yield mission, Decision(index, mission.time, mission.actor, choice)
+            make(mission, choice, index)
+
+    def decisions(self) -> tuple[Decision, ...]:
+        """Every decision."""
+        return tuple(decision for _, decision in self.replay())
+
+    def mission(self, index: int | None = None) -> Mission:
+        """A fresh mission as it stood before decision `index`; by default after the last one."""
+        return after(self.scenario, self.choices[:index], self.mask_rule)
+
+    def plan(self) -> Plan:
+        """The routes taken, as a plan."""
+        routes = self.mission().routes
+        return Plan(tuple(map(tuple, routes)), self.scenario.name, self.method, self.bound)
+
+
+def after(scenario: Scenario, choices: Sequence[Choice], mask_rule: MaskRule) -> Mission:
+    """A fresh mission in which these choices have been made.
+
+    Raises:
+        PlanError: if a robot did not have its choice.
+    """
+    mission = Mission(scenario, mask_rule)
+    for index, choice in enumerate(choices):
+        make(mission, choice, index)
+    return mission
+
+
+def make(mission: Mission, choice: Choice, index: int) -> None:
+    """Let the acting robot have its choice, and move on to the next decision.
+
+    Raises:
+        PlanError: if it may not have it; the message names the decision by its index.
+    """
+    try:
+        if choice.task is None:
+            mission.stay()
+        else:
+            mission.assign(choice.task)
+    except ActionError as error:
+        raise PlanError(f"decision {index}: {error}") from None
+
+
+def tightest_rule(scenario: Scenario, plan: Plan) -> MaskRule:
+    """The mask rule that allows the least of those that allow every visit of the plan.
+
+    Raises:
+        PlanError: if the plan does not fit the scenario.
+    """
+    rule: MaskRule = "feasible"
+    for visits in verify(scenario, plan).schedule:
+        ready = 0.0
+        for visit in visits:
+            if ready > visit.deadline:
+                return "unvisited"
+            if not visit.completed:
+                rule = "active"
+            ready = visit.finish
+    return rule

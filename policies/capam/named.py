@@ -1,0 +1,56 @@
+"""What a configuration can name: the package's own, and what users register."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TypeVar
+
+from mrta_zoo.errors import ConfigError
+
+T = TypeVar("T")
+
+
+class Named(dict[str, T]):
+    """Things by the names that a field of `NetworkConfig` takes.
+
+    Configurations and saved policies hold names alone: whoever loads a policy has to register what it names first.
+
+    Args:
+        field: of the configuration, for messages.
+        given: what ships with the package.
+    """
+
+    def __init__(self, field: str, given: Mapping[str, T]) -> None:
+        super().__init__(given)
+        self._field, self._given = field, frozenset(given)
+
+    def register(self, name: str) -> Callable[[T], T]:
+        """A decorator that makes a function or class available by that name; replaces one registered before.
+
+        Raises:
+            ConfigError: if the name is empty or belongs to one that ships with the package.
+        """
+        if not name or name in self._given:
+            raise ConfigError(
+                f"what is registered for {self._field} cannot be called {name!r}; expected a name that is none of the "
+                f"package's own ({', '.join(self._given) or 'there are none'})"
+            )
+
+        def decorator(entry: T) -> T:
+            self[name] = entry
+            return entry
+
+        return decorator
+
+    def find(self, name: str) -> T:
+        """What has that name.
+
+        Raises:
+            ConfigError: if nothing has.
+        """
+        if name not in self:
+            raise ConfigError(
+                f"{self._field} has {name!r}; expected {', '.join(self) or 'none'}, or one of your own, registered "
+                "before the network is made or loaded"
+            )
+        return self[name]

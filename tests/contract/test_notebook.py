@@ -1,0 +1,89 @@
+"""Objects show themselves in a notebook: asked as IPython asks them."""
+
+from __future__ import annotations
+
+import base64
+import re
+import xml.etree.ElementTree as ElementTree
+
+import numpy as np
+import pytest
+from factories import small_scenario
+from IPython.core.formatters import DisplayFormatter
+
+from mrta_zoo import Plan, Scenario, mrta_v0
+from mrta_zoo.eval.rows import Row
+from mrta_zoo.generators import UniformGenerator
+from mrta_zoo.html import MOST_ROWS, table
+from mrta_zoo.verify import verify
+
+SCENARIO = Scenario(
+    task_xy=[[10, 0], [0, 20]], deadline=[20, 40], workload=[6, 0],
+    robot_xy=[[0, 0], [50, 50]], capacity=[2, 1], map_size=(100, 50), name="a < b",
+)  # fmt: skip
+
+
+def shown(thing: object) -> str:
+    """What a notebook would show of a thing as HTML, which must be well-formed."""
+    html = DisplayFormatter().format(thing)[0]["text/html"]
+    ElementTree.fromstring(f"<div>{html}</div>")
+    return html
+
+
+def cells(html: str) -> list[list[str]]:
+    return [re.findall(r"<td[^>]*>(.*?)</td>", row) for row in re.findall(r"<tr>(.*?)</tr>", html)][1:]
+
+
+def test_a_scenario():
+    html = shown(SCENARIO)
+    assert "a &lt; b: 2 tasks, 2 robots, map 100 by 50" in html
+    assert cells(html)[0] == ["deadline", "20", "30", "40"]
+    # 320 pixels for 100 distance units, y downwards: task 1 is at (0, 20), 30 units below the top.
+    assert '<circle cx="0.0" cy="96.0"' in html
+    assert html.count("<circle") == 2
+    assert html.count("<title>robot") == 2
+
+
+def test_a_plan_and_its_score():
+    plan = Plan.of([(0, 1), ()], "a < b", "mine")
+    assert "Plan of a &lt; b by mine: 2 tasks taken" in shown(plan)
+    assert cells(shown(plan)) == [["0", "2", "0 → 1"], ["1", "0", "-"]]
+    html = shown(verify(SCENARIO, plan))  # 10 + 6 / 2 = 13, then sqrt(500) = 22.36 more
+    assert "2 of 2 tasks completed (100.0 %), cost 0.000, distance 32.4, makespan 35.4" in html
+    assert cells(html) == [["0", "2 of 2", "35.4", "0 → 1"], ["1", "0 of 0", "-", "-"]]
+
+
+def test_a_row_of_an_evaluation():
+    html = shown(Row("c", "nearest", 2, 1, 1, 0.5, 1.25, 10.0, 8.0, 0.125))
+    assert ["completion", "0.5"] in cells(html)
+    assert "nearest on c" in html
+
+
+@pytest.mark.parametrize("make", [mrta_v0.env, mrta_v0.raw_env, mrta_v0.parallel_env])
+def test_an_environment_is_a_picture(make):
+    env = make(scenario=small_scenario(0))
+    assert "mrta_v0: no mission yet; call reset()" in shown(env)
+    env.reset()
+    html = DisplayFormatter().format(env)[0]["text/html"]
+    assert 'alt="small   time 0.0   8 tasks: 8 active' in html
+    assert base64.b64decode(re.search(r"base64,([^\"]+)", html)[1]).startswith(b"\x89PNG")
+
+
+def test_an_environment_without_pygame_is_text(monkeypatch):
+    monkeypatch.setattr("mrta_zoo.env_base.find_spec", lambda name: None)
+    env = mrta_v0.env(scenario=SCENARIO)
+    env.reset()
+    assert shown(env).startswith("<pre>a &lt; b   time 0.0   2 tasks")
+
+
+def test_many_are_few_enough():
+    scenario = UniformGenerator(tasks=(1000, 1000), robots=(70, 70))(np.random.default_rng(0))
+    assert len(shown(scenario)) < 200_000
+    plan = Plan.of([[]] * 70)
+    assert len(cells(shown(plan))) == MOST_ROWS
+    assert f"and {70 - MOST_ROWS} more" in shown(plan)
+
+
+def test_nothing_in_a_cell_is_markup():
+    assert "<b>&lt;i&gt;</b>" in table("<i>", ["<u>"], [["<script>"]])
+    assert "<script>" not in table("<i>", ["<u>"], [["<script>"]])

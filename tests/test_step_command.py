@@ -1,0 +1,149 @@
+"""The commands that look into episodes: `mrta-zoo step` and `mrta-zoo compare`."""
+
+from __future__ import annotations
+
+import io
+import json
+from pathlib import Path
+
+import pytest
+from factories import small_scenario
+from real_cases import REAL, needs_real_cases
+from test_cli import Captured, fails
+
+from mrta_zoo.cli import main
+from mrta_zoo.debug import compare, record
+from mrta_zoo.io import read_trace, write_plan, write_scenario, write_trace
+from mrta_zoo.plan import Plan
+
+SCENARIO = small_scenario(2, tasks=12, robots=3)
+
+
+@pytest.fixture
+def mission(tmp_path: Path) -> str:
+    write_scenario(SCENARIO, tmp_path / "mission.json")
+    return str(tmp_path / "mission.json")
+
+
+def script(tmp_path: Path, text: str) -> str:
+    (tmp_path / "commands.txt").write_text(text)
+    return str(tmp_path / "commands.txt")
+
+
+def test_a_script_steps_and_the_session_is_saved(mission: str, tmp_path: Path, capsys: Captured) -> None:
+    session = tmp_path / "session.json"
+    arguments = ["step", "--policy", "nearest", "--session", str(session), "--script"]
+    assert main([*arguments, script(tmp_path, "f 4\nstay\nb"), mission]) == 0
+    output = capsys.readouterr()
+    assert output.out.startswith("> f 4\ndecision 4: robot ")
+    assert output.err == ""
+    trace = read_trace(session)
+    assert (trace.bookmark, len(trace.choices), trace.method) == (4, 5, "nearest")
+    assert trace.choices[:4] == record(SCENARIO, "nearest").choices[:4]
+    assert trace.choices[4].task is None
+    # It goes on there, with the same policy, and without the scenario's file.
+    assert main(["step", "--session", str(session), "--script", script(tmp_path, "follow\nend")]) == 0
+    assert "the mission is over" in capsys.readouterr().out
+    assert read_trace(session).choices == record(SCENARIO, "nearest").choices
+    assert "expected one of them" in fails(capsys, [*arguments, script(tmp_path, "f"), mission])
+
+
+def test_standard_input_is_a_script(mission: str, capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+    for flags in (["--script", "-"], []):
+        monkeypatch.setattr("sys.stdin", io.StringIO("f 2\nlog\n"))
+        assert main(["step", mission, "--policy", "edf", *flags]) == 0
+        assert "2 decisions so far" in capsys.readouterr().out
+
+
+def test_without_a_scenario_one_is_drawn(tmp_path: Path, capsys: Captured) -> None:
+    drawn = []
+    for seed in ("1", "1", "2"):
+        assert main(["step", "--seed", seed, "--policy", "random", "--script", script(tmp_path, "f 9\nlog")]) == 0
+        drawn.append(capsys.readouterr().out)
+    assert drawn[0] == drawn[1] != drawn[2]
+    assert "drawn with seed 2: 100 tasks" in drawn[2]
+
+
+def test_a_plan_or_a_trace_may_advise(mission: str, tmp_path: Path, capsys: Captured) -> None:
+    routes = record(SCENARIO, "nearest").plan().routes
+    plan = Plan((routes[0][:1], (), routes[2][:1]), SCENARIO.name, "hand")
+    write_plan(plan, tmp_path / "plan.json")
+    write_trace(record(SCENARIO, plan), tmp_path / "trace.json")
+    for name in ("plan.json", "trace.json"):
+        arguments = ["step", mission, "--policy", str(tmp_path / name), "--script", script(tmp_path, "end\nlog")]
+        assert main(arguments) == 0
+        assert "the mission is over: completed 2 of 12" in capsys.readouterr().out
+    assert main(["step", mission, "--policy", "none", "--script", script(tmp_path, "3\nlog")]) == 0
+    assert "robot 0 takes task 3" in capsys.readouterr().out
+
+
+def test_a_session_keeps_its_seed(mission: str, tmp_path: Path, capsys: Captured) -> None:
+    session = str(tmp_path / "session.json")
+    arguments = ["--session", session, "--script"]
+    half = script(tmp_path, "f 3")
+    assert main(["step", mission, "--policy", "random", "--seed", "5", *arguments, half]) == 0
+    assert main(["step", *arguments, script(tmp_path, "end")]) == 0
+    assert read_trace(session).choices == record(SCENARIO, "random", seed=5).choices
+    capsys.readouterr()
+
+
+def test_what_cannot_be_stepped(mission: str, tmp_path: Path, capsys: Captured) -> None:
+    commands = script(tmp_path, "# a comment\nf 1\ntake 99\n")
+    assert main(["step", mission, "--policy", "nearest", "--script", commands]) == 2
+    output = capsys.readouterr()
+    assert output.out == "> f 1\ndecision 1: robot 1 chooses at 0.0\n> take 99\n"
+    assert "commands.txt, line 3: robot 1 chose task 99; tasks are numbered 0 to 11" in output.err
+    assert "there is no method 'nearst'" in fails(capsys, ["step", mission, "--policy", "nearst", "--script", commands])
+    assert "there is no such file" in fails(capsys, ["step", mission, "--policy", "edf", "--script", "no.txt"])
+    assert "expected SCENARIO" in fails(capsys, ["step", "--agents", mission, "--script", commands])
+    assert "which is the scenario" in fails(capsys, ["step", mission, "--session", mission, "--script", commands])
+    write_plan(Plan(((), ())), tmp_path / "plan.json")
+    message = fails(capsys, ["step", mission, "--policy", str(tmp_path / "plan.json"), "--script", commands])
+    assert "the plan has 2 routes" in message
+
+
+def test_compare_prints_and_writes(mission: str, tmp_path: Path, capsys: Captured) -> None:
+    write_plan(record(SCENARIO, "edf").plan(), tmp_path / "plan.json")
+    plan, out = str(tmp_path / "plan.json"), tmp_path / "comparison.json"
+    assert main(["compare", mission, "--methods", f"nearest,{plan}", "--out", str(out), "--rows", "2"]) == 0
+    output = capsys.readouterr().out
+    found = compare(SCENARIO, "nearest", record(SCENARIO, "edf").plan())
+    assert found.parting is not None
+    instead = found.parting.otherwise[0]
+    assert instead is not None
+    assert f"They part at decision {found.parting.index}, at {found.parting.time:.1f}, when robot" in output
+    assert f"there and then by itself: completed {instead.completed} (" in output
+    assert f"choose otherwise at {len(found.disagreements)} of {len(found.traces[0].choices)} decisions" in output
+    assert output.count("more (--rows)") == sum(
+        len(each) > 2
+        for each in (
+            found.disagreements, found.turns,
+            [fate for fate in found.fates if fate.completed[0]], [fate for fate in found.fates if fate.completed[1]],
+        )
+    )  # fmt: skip
+    document = json.loads(out.read_text())
+    assert (document["format"], document["version"], document["methods"]) == (
+        "mrta_zoo.comparison",
+        1,
+        ["nearest", plan],
+    )
+    assert document["parting"]["otherwise"][0]["cost"] == instead.cost
+    assert len(document["turns"]) == len(found.turns)
+    assert main(["compare", mission, "--methods", f"edf,{plan}"]) == 0
+    assert f"edf and {plan} do the same throughout" in capsys.readouterr().out
+
+
+def test_what_cannot_be_compared(mission: str, capsys: Captured) -> None:
+    assert "expected two, such as" in fails(capsys, ["compare", mission, "--methods", "nearest"])
+    assert "named twice" in fails(capsys, ["compare", mission, "--methods", "nearest,nearest"])
+    assert "rows is 0" in fails(capsys, ["compare", mission, "--methods", "nearest,edf", "--rows", "0"])
+    assert "which is the scenario" in fails(capsys, ["compare", mission, "--methods", "edf,random", "--out", mission])
+
+
+@needs_real_cases
+def test_a_real_case(tmp_path: Path, capsys: Captured) -> None:
+    case = str(min((REAL / "n100" / "group1").glob("*.txt")))
+    assert main(["compare", case, "--methods", "nearest,edf"]) == 0
+    assert "They part at decision" in capsys.readouterr().out
+    assert main(["step", case, "--policy", "nearest", "--script", script(tmp_path, "jump 1\nshow\nend")]) == 0
+    assert "the mission is over: completed" in capsys.readouterr().out
