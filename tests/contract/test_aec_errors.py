@@ -100,7 +100,7 @@ def test_nothing_can_be_asked_before_the_first_reset():
         ({"mask_rule": None}, "mask_rule is None"),
         ({"reward": "sparse"}, "reward is 'sparse'; expected one of terminal, completion, individual, or a function"),
         ({"reward": ["terminal"]}, "reward is"),
-        ({"observation": "box"}, "observation is 'box'; expected one of dict, flat"),
+        ({"observation": "box"}, "observation is 'box'; expected one of dict, masked, flat"),
         ({"observation": ["dict"]}, "observation is"),
         ({"render_mode": "window"}, "render_mode is 'window'; expected one of ansi, human, rgb_array"),
         ({"max_tasks": 0}, "max_tasks is 0; expected a whole number >= 1"),

@@ -14,6 +14,7 @@ from mrta_zoo.errors import ConfigError, PlanError
 from mrta_zoo.observation import Observation
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.heuristics import RandomPolicy
+from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.registry import make_solver, method_names
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import Choice, Trace
@@ -26,7 +27,8 @@ SCENARIO = small_scenario(2, tasks=12, robots=3)
     [*((name, None) for name in (*method_names(), "nearest+polish")), ("edf", "unvisited"), ("capam", "active")],
 )
 def test_every_method_is_recorded_as_it_plans(name: str, rule: Any) -> None:
-    if name in ("capam", "capam-plus"):
+    learned = name in pretrained_names()
+    if learned:
         pytest.importorskip("torch")
     options: dict[str, Any] = {"seed": 3, "mask_rule": rule} | ({"budget": 0.2} if name == "pyvrp" else {})
     trace = record(SCENARIO, name, **options)
@@ -35,7 +37,7 @@ def test_every_method_is_recorded_as_it_plans(name: str, rule: Any) -> None:
         assert trace.plan() == plan
     assert trace.mission().done
     assert trace.seed == 3
-    assert all((choice.probabilities is not None) == (name in ("capam", "capam-plus")) for choice in trace.choices)
+    assert all((choice.probabilities is not None) == learned for choice in trace.choices)
 
 
 @pytest.mark.parametrize("decode", ["greedy", "sample", "augment", "beam"])
