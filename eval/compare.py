@@ -78,7 +78,10 @@ def compare_command(argv: Sequence[str]) -> None:
         files = {name: Path(name) for name in both if name.endswith(".json")}
         check_distinct({"--out": command.out}, {"the scenario": command.scenario, **files})
     scenario = read_scenario(command.scenario, command.agents)
-    with preparing(), cpu_threads(command.planning.threads):
+    with (
+        preparing(f"plans {command.scenario} by {' and '.join(both)}, and again from where they part"),
+        cpu_threads(command.planning.threads),
+    ):
         first, second = (_advisor(scenario, name, command.planning) for name in both)
         found = compare(scenario, first, second)
     if command.out:
@@ -91,7 +94,7 @@ def compare_command(argv: Sequence[str]) -> None:
 
 
 def _advisor(scenario: Scenario, name: str, planning: PlanningFlags) -> Advisor:
-    plan = read_any_plan(Path(name))
+    plan = read_any_plan(Path(name), scenario)
     if plan is not None:
         return make_advisor(scenario, plan, mask_rule=planning.mask_rule)
     return make_advisor(scenario, name, **asdict(planning))

@@ -18,12 +18,16 @@ def results_console() -> Console:
     return Console(file=sys.stdout, width=width, markup=False, highlight=False, emoji=False)
 
 
-def preparing() -> AbstractContextManager[object]:
-    """A sign of life on standard error while methods are made ready, if that is a terminal."""
+def preparing(what: str = "preparing") -> AbstractContextManager[object]:
+    """A sign of life on standard error while methods are made ready, if that is a terminal.
+
+    Args:
+        what: is going on.
+    """
     console = Console(file=sys.stderr, markup=False, highlight=False, emoji=False)
     if not console.is_terminal:
         return nullcontext()
-    return console.status("preparing (local search is compiled at its first use, which can take a minute)")
+    return console.status(f"{what} (local search, if any, is compiled at its first use, which can take a minute)")
 
 
 def progress_bar() -> Progress:

@@ -15,6 +15,7 @@ from mrta_zoo.eval.commands import METHOD_HELP, PlanningFlags
 from mrta_zoo.eval.console import preparing, results_console
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
+from mrta_zoo.eval.step import check_name
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import read_plan, read_scenario, read_trace
 from mrta_zoo.io.json_format import json_kind
@@ -80,7 +81,7 @@ def replay_command(argv: Sequence[str]) -> None:
     if sides > MOST_SIDES:
         raise ConfigError(f"that makes {sides} episodes; expected {MOST_SIDES} at most, side by side")
     scenario, given = _source(command, kind)
-    with preparing(), cpu_threads(command.planning.threads):
+    with preparing("plays the episodes"), cpu_threads(command.planning.threads):
         traces = [*given, *(_episode(scenario, name, command.planning) for name in chosen)]
     write_replay(traces, command.out)
     shown = " and ".join(trace.method or "an unnamed method" for trace in traces)
@@ -104,8 +105,7 @@ def _source(command: Replay, kind: str) -> tuple[Scenario, list[Trace]]:
                 f"{command.source} is a plan, which does not hold its scenario; expected --scenario SCENARIO"
             )
         scenario = read_scenario(command.scenario, command.agents)
-        plan = read_plan(command.source)
-        return scenario, [Trace.of_plan(scenario, plan, command.planning.mask_rule)]
+        return scenario, [_of_plan(command.source, scenario, command.planning)]
     if command.scenario is not None:
         raise ConfigError(f"--scenario is given, and {command.source} is no plan; expected a plan, or no --scenario")
     return read_scenario(command.source, command.agents), []
@@ -117,5 +117,11 @@ def _episode(scenario: Scenario, name: str, planning: PlanningFlags) -> Trace:
     if kind == TRACE:
         return read_trace(name)
     if kind == PLAN:
-        return Trace.of_plan(scenario, read_plan(name), planning.mask_rule)
+        return _of_plan(Path(name), scenario, planning)
     return record(scenario, name, **asdict(planning))
+
+
+def _of_plan(path: Path, scenario: Scenario, planning: PlanningFlags) -> Trace:
+    plan = read_plan(path)
+    check_name(path, plan, scenario)
+    return Trace.of_plan(scenario, plan, planning.mask_rule)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Annotated
@@ -69,7 +71,8 @@ class Step:
     script: Annotated[str | None, optional("FILE|-")] = None
     """Commands, one a line, in place of a terminal; - is standard input. Ends with code 2 at the first that fails."""
     session: Annotated[Path | None, optional("SESSION.json")] = None
-    """Go on with the session, or any trace, in this file, if there is one; and save there on leaving."""
+    """Go on with the session, or any trace, in this file, if there is one; and save there on leaving. A scenario given
+    besides must be the session's."""
     planning: Annotated[PlanningFlags, arg(name="")] = field(default_factory=PlanningFlags)
 
 
@@ -84,7 +87,7 @@ def step_command(argv: Sequence[str]) -> None:
     if command.session:
         check_destination(command.session)
         check_distinct({"--session": command.session}, {"the scenario": command.scenario})
-    with cpu_threads(command.planning.threads):
+    with cpu_threads(command.planning.threads), hangups_raised():
         session = _begin(command)
         try:
             if script is None:
@@ -96,20 +99,37 @@ def step_command(argv: Sequence[str]) -> None:
                 )
                 run_script(session, lines, source, console)
         finally:  # also after Ctrl-C
-            if command.session:
-                session.stepper.save(command.session)
+            if command.session and session.path:  # another one, if it was loaded or saved since
+                session.stepper.save(session.path)
+                if script is None:
+                    print(f"saved; go on with: mrta-zoo step --session {session.path}")
+
+
+@contextmanager
+def hangups_raised() -> Iterator[None]:
+    """A lost connection or a request to end raises SystemExit meanwhile, so that what is to be saved is saved."""
+
+    def end(number: int, _: object) -> None:
+        sys.exit(128 + number)
+
+    before = {number: signal.signal(number, end) for number in (signal.SIGHUP, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _begin(command: Step) -> Session:
     """The session as the flags have it begin."""
     resumed: Trace | None = None
     if command.session and os.path.lexists(command.session):
-        if command.scenario is not None:
-            raise ConfigError(
-                f"both the scenario {command.scenario} and a session that is there already, {command.session}, are "
-                "given; expected one of them"
-            )
         resumed = read_trace(command.session)
+        if command.scenario is not None and _scenario(command) != resumed.scenario:
+            raise ConfigError(
+                f"{command.session} is there already, a session on {resumed.scenario.name or 'another mission'}, "
+                f"which is not {command.scenario}; leave out the scenario to go on with it, or name another file"
+            )
     with preparing():
         if resumed is None:
             scenario = _scenario(command)
@@ -132,7 +152,7 @@ def _scenario(command: Step) -> Scenario:
 def _advisor(scenario: Scenario, name: str, planning: PlanningFlags) -> Advisor | None:
     if name == NOBODY:
         return None
-    plan = read_any_plan(Path(name))
+    plan = read_any_plan(Path(name), scenario)
     if plan is not None:
         return make_advisor(scenario, plan, mask_rule=planning.mask_rule)
     return make_advisor(scenario, name, **asdict(planning))
@@ -150,21 +170,33 @@ def _advisor_again(trace: Trace, name: str | None, planning: PlanningFlags) -> A
     return make_advisor(trace.scenario, trace.method, **options)
 
 
-def read_any_plan(path: Path) -> Plan | None:
+def read_any_plan(path: Path, scenario: Scenario) -> Plan | None:
     """The plan in a plan file or a trace; None if it is a file of another kind, or none.
+
+    Says so on standard error if it bears the name of another scenario.
 
     Raises:
         MrtaError: if it is malformed.
     """
     if path.suffix.lower() != ".json":
         return None
-    return read_trace(path).plan() if json_kind(path) == "mrta_zoo.trace" else read_plan(path)
+    plan = read_trace(path).plan() if json_kind(path) == "mrta_zoo.trace" else read_plan(path)
+    check_name(path, plan, scenario)
+    return plan
+
+
+def check_name(path: Path, plan: Plan, scenario: Scenario) -> None:
+    """Say so on standard error if a plan bears the name of another scenario; files may have been renamed."""
+    if plan.scenario and scenario.name and plan.scenario != scenario.name:
+        print(f"warning: {path} is a plan for {plan.scenario}; the scenario is {scenario.name}", file=sys.stderr)
 
 
 def _script(command: Step) -> tuple[str, list[str]] | None:
     """What messages call the script, and its lines; None to ask at the terminal."""
     if command.script is not None and command.script != "-":
         return command.script, read_text(command.script, ConfigError).split("\n")
+    if sys.stdin is None:
+        raise ConfigError("standard input is closed; expected a terminal, commands there, or --script FILE")
     if command.script == "-" or not sys.stdin.isatty():
         return "standard input", sys.stdin.read().split("\n")
     return None

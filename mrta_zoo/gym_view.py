@@ -73,8 +73,12 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
 
     @property
     def robot(self) -> int:
-        """Index of the robot to act."""
-        return self._aec.possible_agents.index(self._aec.agent_selection)
+        """Index of the robot to act; 0 where the mission is over.
+
+        Raises:
+            ActionError: before the first reset.
+        """
+        return max(self.mission.actor, 0)
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Start an episode; arguments and errors as in the AEC form."""
@@ -114,8 +118,9 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
 
         Under this name sb3-contrib's MaskablePPO asks for it, also through vector environments.
         """
+        over = self.mission.done
         mask: npt.NDArray[np.bool_] = self._aec.infos[self._aec.agent_selection]["action_mask"].astype(bool)
-        return np.ones_like(mask) if self.mission.done else mask
+        return np.ones_like(mask) if over else mask
 
     def render(self) -> Any:
         """The mission as text or picture, by `render_mode`."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import re
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -81,8 +82,8 @@ class NeuralPolicy:
         Raises:
             ConfigError: if `agent` is no robot's name, or there is no network for it.
         """
-        number = agent.removeprefix("robot_")
-        if number == agent or not number.isdecimal():
+        number = str(agent).removeprefix("robot_")
+        if number == agent or not re.fullmatch("0|[1-9][0-9]{0,8}", number):
             raise ConfigError(f"there is no agent {agent!r}; expected robot_0, robot_1, …")
         if not isinstance(self.network, IndependentNetworks):
             return self

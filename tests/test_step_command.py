@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import io
 import json
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -45,7 +48,26 @@ def test_a_script_steps_and_the_session_is_saved(mission: str, tmp_path: Path, c
     assert main(["step", "--session", str(session), "--script", script(tmp_path, "follow\nend")]) == 0
     assert "the mission is over" in capsys.readouterr().out
     assert read_trace(session).choices == record(SCENARIO, "nearest").choices
-    assert "expected one of them" in fails(capsys, [*arguments, script(tmp_path, "f"), mission])
+    # Nor does it mind its file; another mission's it does.
+    assert main([*arguments, script(tmp_path, "b 99\nf"), mission]) == 0
+    assert read_trace(session).bookmark == 1
+    write_scenario(small_scenario(5), tmp_path / "other.json")
+    before = session.read_bytes()
+    assert "leave out the scenario to go on with it" in fails(
+        capsys, [*arguments, script(tmp_path, "f"), str(tmp_path / "other.json")]
+    )
+    assert session.read_bytes() == before
+    # `load` goes on with the loaded file, and `save` spares what is no session.
+    other = tmp_path / "loaded.json"
+    other.write_bytes(before)
+    lines = f"load {other}\nf 2\n"
+    assert main(["step", "--session", str(session), "--script", script(tmp_path, lines)]) == 0
+    assert (read_trace(other).bookmark, session.read_bytes()) == (3, before)
+    scenario = Path(mission).read_bytes()
+    with_save = ["step", "--session", str(session), "--script", script(tmp_path, f"save {mission}")]
+    assert main(with_save) == 2
+    assert "is there already and is no session" in capsys.readouterr().err
+    assert Path(mission).read_bytes() == scenario
 
 
 def test_standard_input_is_a_script(mission: str, capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -147,3 +169,33 @@ def test_a_real_case(tmp_path: Path, capsys: Captured) -> None:
     assert "They part at decision" in capsys.readouterr().out
     assert main(["step", case, "--policy", "nearest", "--script", script(tmp_path, "jump 1\nshow\nend")]) == 0
     assert "the mission is over: completed" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("number", [signal.SIGHUP, signal.SIGTERM])
+def test_a_lost_connection_saves_the_session(mission: str, tmp_path: Path, number: int) -> None:
+    session = tmp_path / "session.json"
+    code = (
+        "import os, sys; from mrta_zoo.cli import main; from mrta_zoo.debug.session import Session; do = Session.do; "
+        f"Session.do = lambda self, line: os.kill(os.getpid(), {int(number)}) if line == 'q' else do(self, line); "
+        "sys.exit(main(sys.argv[1:]))"
+    )
+    flags = ["--policy", "edf", "--session", str(session), "--script", script(tmp_path, "f 3\nq")]
+    command = [sys.executable, "-c", code, "step", mission, *flags]
+    done = subprocess.run(command, capture_output=True, timeout=60, check=False)
+    assert (done.returncode, done.stderr) == (128 + number, b"")
+    assert read_trace(session).bookmark == 3
+
+
+def test_a_closed_standard_input_is_told(mission: str, capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdin", None)
+    assert "standard input is closed" in fails(capsys, ["step", mission, "--policy", "edf"])
+
+
+def test_a_plan_of_another_name_is_noticed(mission: str, tmp_path: Path, capsys: Captured) -> None:
+    write_plan(Plan(record(SCENARIO, "edf").plan().routes, "elsewhere"), tmp_path / "plan.json")
+    for arguments in (
+        ["compare", mission, "--methods", f"{tmp_path / 'plan.json'},nearest"],
+        ["replay", str(tmp_path / "plan.json"), "--scenario", mission, "--out", str(tmp_path / "page.html")],
+    ):
+        assert main(arguments) == 0
+        assert "is a plan for elsewhere; the scenario is" in capsys.readouterr().err

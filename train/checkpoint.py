@@ -139,7 +139,13 @@ def save(folder: Path, run: Reinforce, seconds: float) -> None:
 
 
 def policy_info(run: Reinforce, seconds: float) -> PolicyInfo:
-    """What is saved beside a run's policy."""
+    """What is saved beside a run's policy.
+
+    Raises:
+        ConfigError: if the run has not validated yet.
+    """
+    if not run.history:
+        raise ConfigError("the run has not validated yet; call run.validate() first")
     last = run.history[-1]
     trained = {
         "config": asdict(run.config),

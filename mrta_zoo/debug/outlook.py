@@ -138,7 +138,10 @@ def ranked(prospects: list[Prospect], by: SortKey = "rank") -> list[Prospect]:
     if by not in get_args(SortKey):
         raise ConfigError(f"there is no order {by!r}; expected one of {', '.join(get_args(SortKey))}")
     if by != "rank":
-        return sorted(prospects, key=lambda each: getattr(each, by))
+        # What may be chosen comes first, but for the order by number.
+        return sorted(
+            prospects, key=lambda each: (by != "task" and each.reason != MaskReason.CHOOSABLE, getattr(each, by))
+        )
     return sorted(
         prospects,
         key=lambda each: (

@@ -79,7 +79,7 @@ def _tasks(stepper: Stepper, view: View) -> Listing:
     rows = []
     for each in stepper.outlook(robot, view.order):
         advised, chosen = advice is not None and each.task == advice.task, made is not None and each.task == made.task
-        share = "" if each.probability is None else f"{100 * each.probability:.1f}" if each.probability else "-"
+        share = "" if each.probability is None else f"{100 * each.probability:.1f}"
         free = each.reason == MaskReason.CHOOSABLE
         cells = (
             ("*" if chosen else "") + (">" if advised else ""),

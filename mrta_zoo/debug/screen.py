@@ -90,14 +90,13 @@ def _turn(session: Session) -> str:
     stepper = session.stepper
     robot, scenario = stepper.robot, stepper.scenario
     x, y = stepper.mission.position[robot]
-    text = (
-        f"robot {robot} chooses: at ({x:.1f}, {y:.1f}), capacity {scenario.capacity[robot]:g}, "
-        f"speed {scenario.speed[robot]:g}"
+    what = ""
+    if (advice := stepper.advice) is not None:
+        what = f"; {stepper.method or 'policy'}: {'stay' if advice.task is None else f'task {advice.task}'}"
+    return (
+        f"robot {robot} chooses{what}; at ({x:.1f}, {y:.1f}), capacity {scenario.capacity[robot]:.3g}, "
+        f"speed {scenario.speed[robot]:.3g}"
     )
-    if (advice := stepper.advice) is None:
-        return text
-    what = "stay" if advice.task is None else f"task {advice.task}"
-    return f"{text}; {stepper.method or 'policy'}: {what}"
 
 
 def _queue(session: Session) -> str:

@@ -13,6 +13,7 @@ from mrta_zoo.debug.pages import Listing, View, listing
 from mrta_zoo.debug.stepper import Stepper
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io import read_trace
+from mrta_zoo.io.json_format import json_kind
 from mrta_zoo.trace import Choice
 
 
@@ -135,6 +136,8 @@ class Session:
         path = Path(file) if file else self.path
         if path is None:
             raise ConfigError("there is no file to save to yet; expected save FILE")
+        if path.is_file() and json_kind(path) != "mrta_zoo.trace":
+            raise ConfigError(f"{path} is there already and is no session; expected the name of a new file, or of one")
         self.stepper.save(path)
         self.path, self.unsaved = path, 0
         return f"{len(self.stepper)} decisions saved to {path}"

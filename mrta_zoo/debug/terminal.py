@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 from collections.abc import Iterable
 
 from rich.console import Console, Group, RenderableType
@@ -64,7 +65,7 @@ def run_script(session: Session, lines: Iterable[str], source: str, console: Con
         console.print(f"> {command}")
         try:
             name, _, rows = command.partition(" ")
-            if name == "show" and (not rows or (rows.strip().isdecimal() and 1 <= int(rows) <= 10**6)):
+            if name == "show" and (not rows or re.fullmatch(r"\s*[1-9][0-9]{0,5}", rows, re.ASCII)):
                 _print(console, screen(session, int(rows or SCRIPT_ROWS), console.width))
                 continue
             said = session.do(command)

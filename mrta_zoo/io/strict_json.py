@@ -65,6 +65,8 @@ def read_document(path: StrPath, kind: type[Document], parts: Parts, error: type
         return msgspec.convert(document, type=kind)
     except msgspec.ValidationError as problem:
         raise error(_sentence(path, str(problem), document, kind, parts)) from None
+    except UnicodeEncodeError as problem:  # of text where a number or another key should be
+        raise error(f"{path} holds the text {shown(problem.object)}; expected text without lone surrogates") from None
 
 
 def _check_names(document: dict[str, Any], path: StrPath, error: type[MrtaError]) -> None:

@@ -37,7 +37,7 @@ class Window:
         """
         if self._dismissed:
             return
-        if self._screen is None:
+        if self._screen is None or not pygame.display.get_init():  # pygame has one display: another may have closed it
             self._screen = _open(self._title, picture.get_size())
         if any(event.type == pygame.QUIT for event in pygame.event.get()):
             self.close()

@@ -105,5 +105,5 @@ class Progress extends Chart {
 
 function story({ robot, visit: [task, decision, leave, arrive, finish] }) {
   return `robot ${robot}, task ${task}<br>leaves ${number(leave)}, arrives ${number(arrive)}, done ${number(finish)}` +
-    `<br>due ${number(place.tasks[task][2])}<br>decision ${decision + 1}`;
+    `<br>due ${number(place.tasks[task][2])}<br>decision ${decision}`;
 }

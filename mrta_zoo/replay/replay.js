@@ -54,7 +54,7 @@ class Side {
   strip(strip) {
     this.episode.decisions.forEach(({ time, robot }, index) => {
       strip.append(element("i", "", { style: `left: ${(100 * time) / end}%; background: ${robotColour(robot)}`,
-        title: `decision ${index + 1}: robot ${robot} at ${number(time)}` }));
+        title: `decision ${index}: robot ${robot} at ${number(time)}` }));
     });
     strip.addEventListener("click", ({ clientX }) => { // ticks are thin: the nearest is meant
       const { left, width } = strip.getBoundingClientRect(), time = (end * (clientX - left)) / width;
@@ -90,9 +90,10 @@ class Side {
     body.append(...decision.candidates.map((candidate) => this.row(candidate, decision)));
     table.append(head, body);
     this.decision.replaceChildren(
-      element("b", `Decision ${last + 1} of ${this.times.length}: robot ${decision.robot} ${what} at ` +
+      element("b", `Decision ${last} (of ${this.times.length}): robot ${decision.robot} ${what} at ` +
         `${number(decision.time)}${advice}`),
-      element("p", decision.reasons.map((count, reason) => `${count} ${REASONS[reason]}`).join(", "), { class: "faint" }),
+      element("p", decision.reasons.map((count, reason) => `${count} ${REASONS[reason]}`).join(", ") +
+        `; ${decision.candidates.length} of them listed`, { class: "faint" }),
       table,
     );
   }
@@ -132,7 +133,7 @@ function pick(index, decision) {
   moment.last = sides.map((side) => side.lastBy(moment.time));
   moment.last[index] = decision;
   moment.side = index;
-  location.replace(`#${decision + 1}/${index + 1}`); // so that the address can be passed on
+  location.replace(`#${decision}/${index}`); // so that the address can be passed on
   draw();
 }
 /** To the decision before or after, on the side looked at last. */
@@ -185,8 +186,8 @@ document.addEventListener("keydown", (event) => {
   const action = { " ": play, ArrowLeft: () => step(-1), ArrowRight: () => step(1) }[event.key];
   if (action) { event.preventDefault(); action(); }
 });
-const [decision, side = 1] = location.hash.slice(1).split("/").map(Number);
+const [decision, side = 0] = location.hash.slice(1).split("/").map((part) => parseInt(part, 10));
 const marked = episodes.findIndex((episode) => episode.decisions[episode.bookmark]);
-if (episodes[side - 1]?.decisions[decision - 1]) pick(side - 1, decision - 1);
+if (episodes[side]?.decisions[decision]) pick(side, decision);
 else if (marked >= 0) pick(marked, episodes[marked].bookmark);
 else go(0);

@@ -8,7 +8,7 @@ import torch
 from torch import Tensor, nn
 
 from mrta_zoo.policies.capam.inputs import USUAL_CROSSINGS, Moments, Tasks
-from mrta_zoo.policies.capam.named import Named
+from mrta_zoo.policies.capam.named import Named, of_shape
 
 ContextFeature = Callable[[Tasks, Moments], Tensor]
 """(S, G) numbers, one a decision; best about in [0, 1]."""
@@ -38,7 +38,7 @@ class Context(nn.Module):
 
     def __init__(self, embedding: int, more: tuple[str, ...] = ()) -> None:
         super().__init__()
-        self.more = tuple(CONTEXT_FEATURES.find(name) for name in more)
+        self.more = {name: CONTEXT_FEATURES.find(name) for name in more}
         self.own = nn.Linear(self.OWN + len(more), embedding)
         self.peer = nn.Linear(self.PEER, embedding)
         self.query = nn.Linear(3 * embedding, embedding)
@@ -56,7 +56,10 @@ class Context(nn.Module):
                 work_unit,
                 moments.of_ego(moments.capacity),
                 *own_xy.unbind(-1),
-                *(feature(tasks, moments) for feature in self.more),
+                *(
+                    of_shape("context feature", name, feature(tasks, moments), moments.elapsed.shape).float()
+                    for name, feature in self.more.items()
+                ),
             ),
             -1,
         )

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TypeVar
 
+from torch import Tensor
+
 from mrta_zoo.errors import ConfigError
 
 T = TypeVar("T")
@@ -22,7 +24,7 @@ class Named(dict[str, T]):
 
     def __init__(self, field: str, given: Mapping[str, T]) -> None:
         super().__init__(given)
-        self._field, self._given = field, frozenset(given)
+        self._field, self._given = field, tuple(given)
 
     def register(self, name: str) -> Callable[[T], T]:
         """A decorator that makes a function or class available by that name; replaces one registered before.
@@ -30,7 +32,7 @@ class Named(dict[str, T]):
         Raises:
             ConfigError: if the name is empty or belongs to one that ships with the package.
         """
-        if not name or name in self._given:
+        if not isinstance(name, str) or not name or name in self._given:
             raise ConfigError(
                 f"what is registered for {self._field} cannot be called {name!r}; expected a name that is none of the "
                 f"package's own ({', '.join(self._given) or 'there are none'})"
@@ -54,3 +56,21 @@ class Named(dict[str, T]):
                 "before the network is made or loaded"
             )
         return self[name]
+
+
+def of_shape(kind: str, name: str, values: object, shape: tuple[int, ...]) -> Tensor:
+    """What a feature or an encoder gave, if it is what it should be.
+
+    Args:
+        kind: what it is, for messages.
+        name: of it.
+        values: what it gave.
+        shape: what it should have.
+
+    Raises:
+        ConfigError: if it is no tensor of that shape.
+    """
+    if not isinstance(values, Tensor) or values.shape != shape:
+        gave = f"shape {tuple(values.shape)}" if isinstance(values, Tensor) else f"a {type(values).__name__}"
+        raise ConfigError(f"{kind} {name!r} gave {gave}; expected a tensor of shape {tuple(shape)}")
+    return values

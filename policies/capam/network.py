@@ -14,6 +14,7 @@ from mrta_zoo.policies.capam.context import Context
 from mrta_zoo.policies.capam.decoder import AttentionDecoder, Keys
 from mrta_zoo.policies.capam.encoders import build_encoder
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.capam.named import of_shape
 from mrta_zoo.policies.capam.neighbourhood import Neighbourhood
 from mrta_zoo.policies.capam.node_features import NODE_FEATURES, node_features
 
@@ -74,6 +75,7 @@ class AllocationNetwork(nn.Module):
         embeddings = self.encoder(
             node_features(tasks, self.config.node_features), tasks.exists, graph_properties(tasks)
         )
+        of_shape("encoder", self.config.encoder, embeddings, (*tasks.exists.shape, self.config.embedding))
         if isinstance(self.decoder, AttentionDecoder):
             return Encoding(tasks, keys=self.decoder.keys(embeddings))
         return Encoding(tasks, embeddings=self.decoder.encoded(embeddings), neighbourhood=Neighbourhood.of(tasks))

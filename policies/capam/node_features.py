@@ -8,7 +8,7 @@ import torch
 from torch import Tensor
 
 from mrta_zoo.policies.capam.inputs import USUAL_CROSSINGS, Tasks
-from mrta_zoo.policies.capam.named import Named
+from mrta_zoo.policies.capam.named import Named, of_shape
 
 NodeFeature = Callable[[Tasks], Tensor]
 """(S, N) numbers, one a task; best about in [0, 1]."""
@@ -34,4 +34,6 @@ def node_features(tasks: Tasks, names: tuple[str, ...]) -> Tensor:
     Raises:
         ConfigError: if there is no feature of some name.
     """
-    return torch.stack([NODE_FEATURES.find(name)(tasks) for name in names], -1)
+    shape = tasks.exists.shape
+    columns = [of_shape("node feature", name, NODE_FEATURES.find(name)(tasks), shape).float() for name in names]
+    return torch.stack(columns, -1)

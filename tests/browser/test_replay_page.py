@@ -119,9 +119,7 @@ def check_decision(page: OpenPage, side: int, index: int) -> None:
     """That heading, clock, table, and marks on map and chart are those of a decision."""
     trace = TRACES[side]
     decision = trace.decisions()[index]
-    heading = (
-        f"Decision {index + 1} of {len(trace.choices)}: robot {decision.robot} takes task {decision.choice.task} at"
-    )
+    heading = f"Decision {index} (of {len(trace.choices)}): robot {decision.robot} takes task {decision.choice.task} at"
     assert page.decision(side).startswith(heading)
     assert float(page.texts("#clock")[0].removeprefix("time ")) == pytest.approx(decision.time, abs=0.06)
     chosen = page.tab.locator(f"#side-{side} tr.chosen")
@@ -251,7 +249,7 @@ def test_an_episode_that_breaks_off(browser, tmp_path, choices):
     page = OpenPage(browser, (tmp_path / "cut.html").as_uri())
     assert page.tab.locator("#strip-0 i").count() == choices
     if choices:
-        assert page.decision(0).startswith("Decision 2 of 3")  # the bookmark
+        assert page.decision(0).startswith("Decision 1 (of 3)")  # the bookmark
     else:
         assert page.texts("#side-0 .decision p") == ["No decision has been made yet."]
     page.slide(50)

@@ -127,6 +127,17 @@ def test_a_window_closed_by_its_user_stays_closed():
     assert not pygame.display.get_init()
 
 
+def test_a_window_that_another_closed_opens_again(monkeypatch):
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    one, other = Window("one", fps=1000), Window("other", fps=1000)
+    for window in (one, other):
+        window.show(pygame.Surface((30, 20)))
+    one.close()
+    other.show(pygame.Surface((30, 20)))
+    assert pygame.display.get_caption()[0] == "other"
+    other.close()
+
+
 def test_without_a_display_there_is_a_sentence(monkeypatch):
     monkeypatch.setenv("SDL_VIDEODRIVER", "x11")
     monkeypatch.setenv("DISPLAY", ":77")  # nobody is there

@@ -166,3 +166,13 @@ def test_unknown_suffix_is_refused(tmp_path: Path) -> None:
     scenario = Scenario([[1, 1]], [5], [1], [[0, 0]], [1])  # type: ignore[arg-type]
     with pytest.raises(ScenarioError, match=r"suffix '\.yaml'; expected \.json, \.csv or \.txt"):
         write_scenario(scenario, tmp_path / "one.yaml")
+
+
+@pytest.mark.parametrize(
+    "text", ['"x": "\\ud800"', '"\\ud800": 1, "x": 1'], ids=["where a number should be", "as a key"]
+)
+def test_text_that_cannot_be_written_is_told(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "lone.json"
+    path.write_text(json.dumps(SMALL).replace('"x": 1', text))
+    with pytest.raises(ScenarioError, match="expected text without lone surrogates"):
+        read_scenario(path)

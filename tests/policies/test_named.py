@@ -84,6 +84,25 @@ def test_registering_again_replaces() -> None:
     assert NODE_FEATURES.find("zero")(Tasks.of_batch(batch)).tolist() == [[1, 1, 1]]
 
 
+@pytest.mark.usefixtures("registered")
+@pytest.mark.parametrize(
+    ("registry", "name", "entry", "message"),
+    [
+        (NODE_FEATURES, "zero", lambda tasks: tasks.xy, r"node feature 'zero' gave shape \(1, 10, 2\); expected a t"),
+        (NODE_FEATURES, "zero", lambda tasks: 3.0, r"node feature 'zero' gave a float; expected .* of shape \(1, 10\)"),
+        (CONTEXT_FEATURES, "choices", lambda tasks, moments: moments.mask, r"context feature 'choices' gave shape"),
+        (ENCODERS, "mine", lambda features, config: LinearEncoder(features, 8), r"encoder 'mine' gave shape"),
+    ],
+)  # fmt: skip
+def test_what_gives_another_shape_is_named(registry: Any, name: str, entry: Any, message: str) -> None:
+    registry.register(name)(entry)
+    batch = ScenarioBatch.of([TaptcGenerator(tasks=(10, 10), robots=(2, 2))(np.random.default_rng(0))])
+    tasks, moments = Tasks.of_batch(batch), Moments.of_batch(BatchMission(batch))
+    network = build_network(OWN, "shared", 1, seed=0)
+    with pytest.raises(ConfigError, match=message):
+        network(network.encode(tasks), moments)
+
+
 def test_the_candidate_decoder_has_no_context() -> None:
     with pytest.raises(
         ConfigError, match=r"context_features is \('choices',\); expected none with decoder 'candidates"
