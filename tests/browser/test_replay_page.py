@@ -175,7 +175,7 @@ def test_keys_and_buttons_step_from_decision_to_decision(page):
 
 def test_the_address_names_the_decision(page, browser):
     page.tab.evaluate("pick(1, 4)")
-    assert page.tab.url.endswith("pair.html#5/2")
+    assert page.tab.url.endswith("pair.html#4/1")
     other = OpenPage(browser, page.tab.url)
     check_decision(other, 1, 4)
     other.tab.close()
@@ -199,7 +199,8 @@ def test_the_table_tells_why_a_task_may_not_be_chosen(page):
     page.tab.evaluate(f"pick(0, {index})")
     counts = np.bincount(mission.reasons(decision.robot), minlength=4)
     assert page.texts("#side-0 .decision p") == [
-        f"{counts[0]} to choose from, {counts[1]} taken, {counts[2]} deadline passed, {counts[3]} too late"
+        f"{counts[0]} to choose from, {counts[1]} taken, {counts[2]} deadline passed, {counts[3]} too late; "
+        f"{page.tab.locator('#side-0 .decision tbody tr').count()} of them listed"
     ]
     reasons = " ".join(page.texts("#side-0 tr.barred"))
     assert re.search(r"robot \d on it until|too late by \d", reasons)
