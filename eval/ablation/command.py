@@ -9,17 +9,16 @@ from typing import Annotated
 
 from tyro.conf import arg
 
-from mrta_zoo.eval.ablation.questions import QUESTIONS, choose, needed
+from mrta_zoo.eval.ablation.questions import QUESTIONS, needed
 from mrta_zoo.eval.ablation.report import make_report
 from mrta_zoo.eval.ablation.study import Study
 from mrta_zoo.eval.ablation.variants import ROBOTS, Budget, all_variants
-from mrta_zoo.eval.console import results_console
 from mrta_zoo.eval.experiment import make_manifest
 from mrta_zoo.eval.flags import names, parse
-from mrta_zoo.eval.reproduce.report import write_report
+from mrta_zoo.eval.reproduce.report import publish
 from mrta_zoo.eval.training.held_out import HeldOut
 from mrta_zoo.eval.training.job import Job
-from mrta_zoo.eval.training.study import check_counts, perform_study, read_curves
+from mrta_zoo.eval.training.study import check_counts, choose, perform_study, read_curves
 from mrta_zoo.io import Case
 
 USUAL = Budget()
@@ -67,7 +66,7 @@ def ablate_command(argv: Sequence[str]) -> None:
     """
     command = parse(Ablate, argv, "ablate")
     check_counts(command.seeds, command.workers)
-    questions = choose(names(command.only, "only", "questions", "encoder,moments"))
+    questions = choose(names(command.only, "only", "questions", "encoder,moments"), QUESTIONS)
     budget = Budget(
         updates=command.updates,
         paper_updates=command.paper_updates,
@@ -109,9 +108,4 @@ def ablate_command(argv: Sequence[str]) -> None:
         rows=rows,
         curves=read_curves(jobs),
     )
-    report = make_report(study, manifest, sessions)
-    write_report(report, command.out)
-    console = results_console()
-    for point in report.summary:
-        console.print(f"- {point}", soft_wrap=True)
-    console.print(f"report written to {command.out / 'report.html'}", soft_wrap=True)
+    publish(make_report(study, manifest, sessions), command.out)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.ablation.variants import CAPAM, REFERENCE
 from mrta_zoo.eval.training.held_out import Distribution
 
@@ -75,15 +74,3 @@ def needed(questions: Sequence[Question]) -> dict[str, tuple[Distribution, ...]]
         for name in question.variants:
             found[name] = tuple(dict.fromkeys((*found.get(name, ()), *question.distributions)))
     return found
-
-
-def choose(names: Sequence[str]) -> list[Question]:
-    """Questions by name.
-
-    Raises:
-        ConfigError: if there is none of some name.
-    """
-    for name in names:
-        if name not in QUESTIONS:
-            raise ConfigError(f"there is no question {name!r}; expected some of {', '.join(QUESTIONS)}")
-    return [question for question in QUESTIONS.values() if question.name in names]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.eval.training.budget import Budget as StudyBudget
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.train.config import TrainConfig
 
@@ -20,18 +21,12 @@ PLUS_NETWORK = NetworkConfig(
 PAPER_NETWORK = replace(PLUS_NETWORK, decoder="attention")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Budget:
-    """What all runs of a study have in common.
+@dataclass(frozen=True, kw_only=True)
+class Budget(StudyBudget):
+    """What all runs of the study have in common; `updates` is for runs with the candidate decoder.
 
     Attributes:
-        updates: gradient steps of runs with the candidate decoder.
         paper_updates: gradient steps of runs with the paper's decoder, which take about a fifth of the time each.
-        scenarios: scenarios an update.
-        samples: missions sampled of each.
-        tasks: tasks of a scenario, in training and in the comparison.
-        validations: how often a run is validated, besides at the beginning.
-        validation_scenarios: on how many scenarios.
     """
 
     updates: int = 120
@@ -43,34 +38,13 @@ class Budget:
     validation_scenarios: int = 48
 
     def __post_init__(self) -> None:
-        for name in ("updates", "paper_updates", "scenarios", "tasks", "validations"):
-            if getattr(self, name) < 1:
-                raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 1")
-        if self.samples < 2:
-            raise ConfigError(f"samples is {self.samples}; expected at least 2, as samples are compared")
+        super().__post_init__()
+        if self.paper_updates < 1:
+            raise ConfigError(f"paper_updates is {self.paper_updates}; expected a whole number >= 1")
 
     def config(self, network: NetworkConfig, updates: int) -> TrainConfig:
         """The run of the reference, or of CapAM."""
-        return TrainConfig(
-            network=network,
-            generator="taptc",
-            tasks=(self.tasks,),
-            reference_tasks=self.tasks,
-            min_robots=1,
-            max_robots=4,
-            mask_rule="feasible",
-            objective="completion",
-            baseline="samples",
-            scenarios=self.scenarios,
-            samples=self.samples,
-            updates=updates,
-            learning_rate=1e-3,
-            final_learning_rate=1e-4,
-            epoch=max(1, updates // self.validations),
-            validation_scenarios=self.validation_scenarios,
-            keep_checkpoints=1,
-            device="cpu",
-        )
+        return self.run(network=network, updates=updates, min_robots=ROBOTS[0], max_robots=ROBOTS[-1])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,7 +12,7 @@ from tyro.conf import arg
 from mrta_zoo import __version__
 from mrta_zoo.errors import ConfigError, MissingExtraError
 from mrta_zoo.eval.case_choice import read_all, shown_cases
-from mrta_zoo.eval.console import preparing, results_console
+from mrta_zoo.eval.console import preparing
 from mrta_zoo.eval.experiment import Manifest, make_manifest, measure, open_experiment
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.machine import Session, this_session
@@ -22,7 +22,7 @@ from mrta_zoo.eval.reproduce.completion import completion_section
 from mrta_zoo.eval.reproduce.moments import moments_section
 from mrta_zoo.eval.reproduce.optimality import EXACT, optimality_section
 from mrta_zoo.eval.reproduce.parts import Report
-from mrta_zoo.eval.reproduce.report import write_report
+from mrta_zoo.eval.reproduce.report import publish
 from mrta_zoo.eval.reproduce.share import share_section
 from mrta_zoo.eval.reproduce.study import OptimalityRow, Study, frame_of
 from mrta_zoo.eval.reproduce.summary import summary
@@ -117,12 +117,7 @@ def reproduce_command(argv: Sequence[str]) -> None:
         small=frame_of(small.rows, [case.name for case in small_cases], list(small_solvers)) if exact else None,
         absent=absent,
     )
-    report = make_report(study, manifest, sessions.rows, absent)
-    write_report(report, command.out)
-    console = results_console()
-    for point in report.summary:
-        console.print(f"- {point}", soft_wrap=True)
-    console.print(f"report written to {command.out / 'report.html'}", soft_wrap=True)
+    publish(make_report(study, manifest, sessions.rows, absent), command.out)
 
 
 def make_report(study: Study, manifest: Manifest, sessions: Sequence[Session], absent: Mapping[str, str]) -> Report:

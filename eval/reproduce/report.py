@@ -10,6 +10,7 @@ import jinja2
 from markupsafe import Markup, escape
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.eval.console import results_console
 from mrta_zoo.eval.figure_style import save_figure
 from mrta_zoo.eval.reproduce.parts import Report
 from mrta_zoo.io.source import write_text
@@ -34,6 +35,19 @@ def write_report(report: Report, folder: Path) -> None:
             write_text(render(report, suffix, folder), folder / f"report.{suffix}", ConfigError)
     except OSError as error:
         raise ConfigError(f"{folder} cannot be written: {(error.strerror or str(error)).lower()}") from None
+
+
+def publish(report: Report, folder: Path) -> None:
+    """Write the report, and print its summary and where it is.
+
+    Raises:
+        ConfigError: if a file cannot be written.
+    """
+    write_report(report, folder)
+    console = results_console()
+    for point in report.summary:
+        console.print(f"- {point}", soft_wrap=True)
+    console.print(f"report written to {folder / 'report.html'}", soft_wrap=True)
 
 
 def render(report: Report, suffix: str, folder: Path) -> str:

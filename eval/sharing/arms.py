@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.eval.training.budget import Budget as StudyBudget
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.sharing import USUAL_KINDS, Sharing
 from mrta_zoo.train.config import TrainConfig
@@ -18,18 +19,9 @@ NETWORK = NetworkConfig(embedding=32, heads=4)
 MOST = TRAINED_ROBOTS[-1]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Budget:
-    """What all runs of a study have in common.
-
-    Attributes:
-        updates: gradient steps.
-        scenarios: scenarios an update, a multiple of `MOST`, so that it can be divided among the robots.
-        samples: missions sampled of each.
-        tasks: tasks of a scenario, in training and in the comparison.
-        validations: how often a run is validated, besides at the beginning.
-        validation_scenarios: on how many scenarios.
-    """
+@dataclass(frozen=True, kw_only=True)
+class Budget(StudyBudget):
+    """What all runs of the study have in common; `scenarios` is a multiple of `MOST`, to divide among the robots."""
 
     updates: int = 600
     scenarios: int = 12
@@ -39,33 +31,14 @@ class Budget:
     validation_scenarios: int = 96
 
     def __post_init__(self) -> None:
-        for name in ("updates", "tasks", "validations"):
-            if getattr(self, name) < 1:
-                raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 1")
         if self.scenarios < 1 or self.scenarios % MOST:
             raise ConfigError(f"scenarios is {self.scenarios}; expected {MOST}, {2 * MOST}, {3 * MOST}, …")
-        if self.samples < 2:
-            raise ConfigError(f"samples is {self.samples}; expected at least 2, as samples are compared")
+        super().__post_init__()
 
     def config(self, sharing: Sharing, scenarios: int) -> TrainConfig:
-        """A run with so many scenarios an update, but for its seed: plain REINFORCE, with nothing to imitate."""
-        return TrainConfig(
-            network=NETWORK,
-            sharing=sharing,
-            generator="taptc",
-            tasks=(self.tasks,),
-            reference_tasks=self.tasks,
-            min_robots=TRAINED_ROBOTS[0],
-            max_robots=MOST,
-            scenarios=scenarios,
-            samples=self.samples,
-            updates=self.updates,
-            learning_rate=1e-3,
-            final_learning_rate=1e-4,
-            epoch=max(1, self.updates // self.validations),
-            validation_scenarios=self.validation_scenarios,
-            keep_checkpoints=1,
-            device="cpu",
+        """A run with so many scenarios an update, but for its seed."""
+        return self.run(
+            network=NETWORK, sharing=sharing, scenarios=scenarios, min_robots=TRAINED_ROBOTS[0], max_robots=MOST
         )
 
 
@@ -124,18 +97,6 @@ QUESTIONS: dict[str, Question] = {
         ),
     )
 }
-
-
-def choose(names: Sequence[str]) -> list[Question]:
-    """Questions by name.
-
-    Raises:
-        ConfigError: if there is none of some name.
-    """
-    for name in names:
-        if name not in QUESTIONS:
-            raise ConfigError(f"there is no question {name!r}; expected some of {', '.join(QUESTIONS)}")
-    return [question for question in QUESTIONS.values() if question.name in names]
 
 
 def all_arms(budget: Budget) -> dict[str, Arm]:

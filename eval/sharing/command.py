@@ -9,16 +9,15 @@ from typing import Annotated
 
 from tyro.conf import arg
 
-from mrta_zoo.eval.console import results_console
 from mrta_zoo.eval.experiment import make_manifest
 from mrta_zoo.eval.flags import names, parse
-from mrta_zoo.eval.reproduce.report import write_report
-from mrta_zoo.eval.sharing.arms import QUESTIONS, TRAINED_ROBOTS, UNSEEN_ROBOTS, Budget, choose, needed
+from mrta_zoo.eval.reproduce.report import publish
+from mrta_zoo.eval.sharing.arms import QUESTIONS, TRAINED_ROBOTS, UNSEEN_ROBOTS, Budget, needed
 from mrta_zoo.eval.sharing.report import make_report
 from mrta_zoo.eval.sharing.study import DISTRIBUTION, Study
 from mrta_zoo.eval.training.held_out import HeldOut
 from mrta_zoo.eval.training.job import Job
-from mrta_zoo.eval.training.study import check_counts, perform_study, read_curves
+from mrta_zoo.eval.training.study import check_counts, choose, perform_study, read_curves
 from mrta_zoo.io import Case
 
 USUAL = Budget()
@@ -65,7 +64,7 @@ def sharing_command(argv: Sequence[str]) -> None:
     """
     command = parse(Share, argv, "sharing")
     check_counts(command.seeds, command.workers)
-    questions = choose(names(command.only, "only", "questions", "episodes,decisions"))
+    questions = choose(names(command.only, "only", "questions", "episodes,decisions"), QUESTIONS)
     budget = Budget(updates=command.updates, scenarios=command.scenarios, samples=command.samples, tasks=command.tasks)
     arms = needed(questions, budget)
     every = HeldOut(command.tasks, command.held_out, tuple(sorted({*TRAINED_ROBOTS, *UNSEEN_ROBOTS})))
@@ -97,9 +96,4 @@ def sharing_command(argv: Sequence[str]) -> None:
         curves=read_curves(jobs),
         folders={(job.variant, job.seed): job.folder for job in jobs},
     )
-    report = make_report(study, manifest, sessions)
-    write_report(report, command.out)
-    console = results_console()
-    for point in report.summary:
-        console.print(f"- {point}", soft_wrap=True)
-    console.print(f"report written to {command.out / 'report.html'}", soft_wrap=True)
+    publish(make_report(study, manifest, sessions), command.out)

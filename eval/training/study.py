@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 from mrta_zoo import __version__
 from mrta_zoo.errors import ConfigError
@@ -31,6 +31,29 @@ def check_counts(seeds: int, workers: int) -> None:
         raise ConfigError(f"seeds is {seeds}; expected a whole number >= 1")
     if not 1 <= workers <= MAX_WORKERS:
         raise ConfigError(f"workers is {workers}; expected a whole number from 1 to {MAX_WORKERS}")
+
+
+class Named(Protocol):
+    """What has a name."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+
+Question = TypeVar("Question", bound=Named)
+
+
+def choose(names: Sequence[str], questions: Mapping[str, Question]) -> list[Question]:
+    """Those of a study's questions that are named, in the study's order.
+
+    Raises:
+        ConfigError: if there is none of some name.
+    """
+    for name in names:
+        if name not in questions:
+            raise ConfigError(f"there is no question {name!r}; expected some of {', '.join(questions)}")
+    return [question for question in questions.values() if question.name in names]
 
 
 def perform_study(

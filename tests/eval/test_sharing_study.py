@@ -15,8 +15,7 @@ import torch
 from scipy import stats
 
 from mrta_zoo.cli import main
-from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.sharing.arms import MOST, QUESTIONS, TRAINED_ROBOTS, Budget, all_arms, choose, needed
+from mrta_zoo.eval.sharing.arms import MOST, QUESTIONS, TRAINED_ROBOTS, Budget, all_arms, needed
 from mrta_zoo.eval.sharing.choices import Questionnaire, compared, divergence, members
 from mrta_zoo.eval.sharing.figures import band
 from mrta_zoo.generators import TaptcGenerator
@@ -44,7 +43,7 @@ def test_ways_of_sharing_differ_in_nothing_else() -> None:
     # Episodes a network are equal where decisions are to be, and episodes where they are to be.
     for question, measure in (("episodes", lambda arm: arm.episodes), ("decisions", lambda a: a.episodes / a.networks)):
         assert len({measure(arms[name]) for name in QUESTIONS[question].arms}) == 1
-    assert set(needed(choose(["decisions"]), Budget())) == {"independent", "shared-fewer", "by-capacity-fewer"}
+    assert set(needed([QUESTIONS["decisions"]], Budget())) == {"independent", "shared-fewer", "by-capacity-fewer"}
     assert arms["independent"].networks == MOST == TRAINED_ROBOTS[-1]
 
 
@@ -143,31 +142,3 @@ def test_one_question_and_one_seed(tmp_path: Path, capsys: pytest.CaptureFixture
     assert "(too few)" in capsys.readouterr().out  # no intervals
     assert main(["sharing", "--out", str(out), *TINY]) == 2
     assert "only was decisions, now it is episodes,decisions" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("flags", "sentence"),
-    [
-        (["--seeds", "0"], "seeds is 0; expected a whole number >= 1"),
-        (["--workers", "0"], "workers is 0; expected a whole number from 1 to 1024"),
-        (["--held-out", "1"], "held_out is 1; expected at least 2"),
-        (["--samples", "1"], "samples is 1; expected at least 2"),
-        (["--updates", "0"], "updates is 0; expected a whole number >= 1"),
-        (["--scenarios", "6"], "scenarios is 6; expected 4, 8, 12, …"),
-        (["--only", "speed"], "there is no question 'speed'; expected some of episodes, decisions"),
-    ],
-)
-def test_what_cannot_be_done_is_said(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], flags: list[str], sentence: str
-) -> None:
-    assert main(["sharing", "--out", str(tmp_path / "out"), *flags]) == 2
-    error = capsys.readouterr().err
-    assert sentence in error
-    assert error.count("\n") == 1
-    assert not (tmp_path / "out").exists()
-
-
-def test_questions_by_name() -> None:
-    assert [question.name for question in choose(["decisions", "episodes"])] == ["episodes", "decisions"]
-    with pytest.raises(ConfigError, match="there is no question"):
-        choose(["other"])
