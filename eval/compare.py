@@ -20,7 +20,7 @@ from mrta_zoo.eval.commands import TRAINED_HELP, PlanningFlags
 from mrta_zoo.eval.console import preparing, results_console
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
-from mrta_zoo.eval.step import read_any_plan
+from mrta_zoo.eval.plan_files import read_any_plan
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import read_scenario
 from mrta_zoo.io.strict_json import write_document

@@ -24,12 +24,11 @@ from mrta_zoo.eval.commands import METHOD_HELP, PlanningFlags
 from mrta_zoo.eval.console import preparing
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import optional, parse
+from mrta_zoo.eval.plan_files import read_any_plan
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.generators import TaptcGenerator
-from mrta_zoo.io import read_plan, read_scenario, read_trace
-from mrta_zoo.io.json_format import json_kind
+from mrta_zoo.io import read_scenario, read_trace
 from mrta_zoo.io.source import read_text
-from mrta_zoo.plan import Plan
 from mrta_zoo.policies.registry import method_names
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import Trace
@@ -99,7 +98,7 @@ def step_command(argv: Sequence[str]) -> None:
                 )
                 run_script(session, lines, source, console)
         finally:  # also after Ctrl-C
-            if command.session and session.path:  # another one, if it was loaded or saved since
+            if command.session and session.path:  # another one, if it was loaded
                 session.stepper.save(session.path)
                 if script is None:
                     print(f"saved; go on with: mrta-zoo step --session {session.path}")
@@ -168,27 +167,6 @@ def _advisor_again(trace: Trace, name: str | None, planning: PlanningFlags) -> A
     if trace.seed is not None:
         options["seed"] = trace.seed
     return make_advisor(trace.scenario, trace.method, **options)
-
-
-def read_any_plan(path: Path, scenario: Scenario) -> Plan | None:
-    """The plan in a plan file or a trace; None if it is a file of another kind, or none.
-
-    Says so on standard error if it bears the name of another scenario.
-
-    Raises:
-        MrtaError: if it is malformed.
-    """
-    if path.suffix.lower() != ".json":
-        return None
-    plan = read_trace(path).plan() if json_kind(path) == "mrta_zoo.trace" else read_plan(path)
-    check_name(path, plan, scenario)
-    return plan
-
-
-def check_name(path: Path, plan: Plan, scenario: Scenario) -> None:
-    """Say so on standard error if a plan bears the name of another scenario; files may have been renamed."""
-    if plan.scenario and scenario.name and plan.scenario != scenario.name:
-        print(f"warning: {path} is a plan for {plan.scenario}; the scenario is {scenario.name}", file=sys.stderr)
 
 
 def _script(command: Step) -> tuple[str, list[str]] | None:

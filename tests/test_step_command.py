@@ -63,6 +63,11 @@ def test_a_script_steps_and_the_session_is_saved(mission: str, tmp_path: Path, c
     lines = f"load {other}\nf 2\n"
     assert main(["step", "--session", str(session), "--script", script(tmp_path, lines)]) == 0
     assert (read_trace(other).bookmark, session.read_bytes()) == (3, before)
+    # A copy does not move the session: what comes after it is saved where the session is.
+    copy = tmp_path / "copy.json"
+    lines = f"goto 0\nsave {copy}\nf 2\n"
+    assert main(["step", "--session", str(session), "--script", script(tmp_path, lines)]) == 0
+    assert (read_trace(copy).bookmark, read_trace(session).bookmark) == (0, 2)
     scenario = Path(mission).read_bytes()
     with_save = ["step", "--session", str(session), "--script", script(tmp_path, f"save {mission}")]
     assert main(with_save) == 2

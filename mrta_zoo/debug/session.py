@@ -23,7 +23,7 @@ class Session:
     Args:
         stepper: where to begin.
         advisor: whose advice a session that is loaded gets.
-        path: where `save` writes without a file of its own.
+        path: where `save` writes without a file of its own: a session's file, or else the first that it was saved to.
 
     Attributes:
         stepper: where one stands.
@@ -139,7 +139,7 @@ class Session:
         if path.is_file() and json_kind(path) != "mrta_zoo.trace":
             raise ConfigError(f"{path} is there already and is no session; expected the name of a new file, or of one")
         self.stepper.save(path)
-        self.path, self.unsaved = path, 0
+        self.path, self.unsaved = self.path or path, 0  # a copy does not move the session
         return f"{len(self.stepper)} decisions saved to {path}"
 
     def load(self, file: str) -> str:
