@@ -24,7 +24,7 @@ from mrta_zoo.bounds import as_finite
 from mrta_zoo.errors import ActionError, ConfigError
 from mrta_zoo.mission import Mission
 from mrta_zoo.mrta_v0 import raw_env
-from mrta_zoo.render import RENDER_MODES
+from mrta_zoo.render import RENDER_FPS, RENDER_MODES
 from mrta_zoo.settings import Illegal, one_of
 from mrta_zoo.world import next_legal
 
@@ -51,7 +51,7 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
         ConfigError: if an option cannot be used.
     """
 
-    metadata = {"render_modes": list(RENDER_MODES), "render_fps": 4}  # noqa: RUF012  (as in Gymnasium's own class)
+    metadata = {"render_modes": list(RENDER_MODES), "render_fps": RENDER_FPS}  # noqa: RUF012  (as in Gymnasium's own class)
 
     def __init__(self, *, on_illegal: Illegal = "terminate", illegal_reward: float = -1.0, **options: Any) -> None:
         one_of("on_illegal", on_illegal, get_args(Illegal))
