@@ -5,9 +5,14 @@ Needs pygame (``mrta_zoo[render]``) and a display.
 
 from __future__ import annotations
 
+import os
+
 import pygame
 
 from mrta_zoo.errors import ConfigError
+
+UNSEEN = ("offscreen", "dummy")
+DRIVER_VARIABLES = ("SDL_VIDEODRIVER", "SDL_VIDEO_DRIVER")
 
 
 class Window:
@@ -57,6 +62,10 @@ class Window:
 def _open(title: str, size: tuple[int, int]) -> pygame.Surface:
     try:
         pygame.display.init()
+        # Where there is no display SDL may choose by itself to draw where nobody sees it.
+        if pygame.display.get_driver() in UNSEEN and not any(name in os.environ for name in DRIVER_VARIABLES):
+            pygame.display.quit()
+            raise pygame.error("there is no display")
         screen = pygame.display.set_mode(size)
     except pygame.error as error:
         raise ConfigError(

@@ -138,9 +138,13 @@ def test_a_window_that_another_closed_opens_again(monkeypatch):
     other.close()
 
 
-def test_without_a_display_there_is_a_sentence(monkeypatch):
-    monkeypatch.setenv("SDL_VIDEODRIVER", "x11")
-    monkeypatch.setenv("DISPLAY", ":77")  # nobody is there
+@pytest.mark.parametrize("driver", ["x11", None])
+def test_without_a_display_there_is_a_sentence(monkeypatch, driver):
+    for name in ("SDL_VIDEODRIVER", "SDL_VIDEO_DRIVER", "DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    if driver:
+        monkeypatch.setenv("SDL_VIDEODRIVER", driver)
+        monkeypatch.setenv("DISPLAY", ":77")  # nobody is there
     env = mrta_v0.env(scenario=small_scenario(0), render_mode="human")
     with pytest.raises(ConfigError, match=r"cannot open a window.*expected a display.*'rgb_array' needs none"):
         env.reset()
