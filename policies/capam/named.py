@@ -30,7 +30,8 @@ class Named(dict[str, T]):
         """A decorator that makes a function or class available by that name; replaces one registered before.
 
         Raises:
-            ConfigError: if the name is empty or belongs to one that ships with the package.
+            ConfigError: if the name is empty or belongs to one that ships with the package, or if what is to be
+                registered cannot be called.
         """
         if not isinstance(name, str) or not name or name in self._given:
             raise ConfigError(
@@ -39,6 +40,10 @@ class Named(dict[str, T]):
             )
 
         def decorator(entry: T) -> T:
+            if not callable(entry):
+                raise ConfigError(
+                    f"{name!r} of {self._field} is a {type(entry).__name__}; expected a function or class to call"
+                )
             self[name] = entry
             return entry
 

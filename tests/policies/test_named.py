@@ -77,6 +77,13 @@ def test_names_of_the_packages_own_are_not_for_others() -> None:
         CONTEXT_FEATURES.register("")
 
 
+def test_what_cannot_be_called_is_not_registered() -> None:
+    entry: Any = 3.0
+    with pytest.raises(ConfigError, match=r"'mine' of node_features is a float; expected a function or class to call"):
+        NODE_FEATURES.register("mine")(entry)
+    assert "mine" not in NODE_FEATURES
+
+
 @pytest.mark.usefixtures("registered")
 def test_registering_again_replaces() -> None:
     NODE_FEATURES.register("zero")(lambda tasks: tasks.deadline * 0 + 1)

@@ -23,9 +23,9 @@ from mrta_zoo.scenario import Scenario
 from mrta_zoo.train import graphed_rollout
 from mrta_zoo.train.cuda_graph import tensors
 from mrta_zoo.train.experts import ExpertPlan
+from mrta_zoo.train.gradients import accumulate_gradients
 from mrta_zoo.train.graphed_rollout import GraphedRollout
 from mrta_zoo.train.imitation import PlanBatch, follow
-from mrta_zoo.train.reinforce import accumulate_gradients
 
 ATTENTION = NetworkConfig(embedding=16, heads=2)
 CANDIDATES = replace(ATTENTION, decoder="candidates", decision_layers=1, candidates=8, peers=2)

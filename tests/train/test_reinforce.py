@@ -18,7 +18,8 @@ from mrta_zoo.policies.capam.inputs import Moments, Tasks
 from mrta_zoo.policies.rollout import roll_out
 from mrta_zoo.policies.sharing import build_network
 from mrta_zoo.train.config import TrainConfig
-from mrta_zoo.train.reinforce import Reinforce, Validation, accumulate_gradients
+from mrta_zoo.train.gradients import accumulate_gradients
+from mrta_zoo.train.reinforce import Reinforce, Validation
 
 SMALL = NetworkConfig(embedding=32, heads=4)
 TINY = TrainConfig(
