@@ -15,7 +15,7 @@ TRAINED_ROBOTS = (2, 3, 4)
 UNSEEN_ROBOTS = (1, 6, 8)
 """Numbers of robots that no run is trained on; independent networks exist only for the first of them."""
 NETWORK = NetworkConfig(embedding=32, heads=4)
-"""CapAM, small, so that the study takes about half an hour."""
+"""CapAM, small, so that the study takes less than half an hour on two cores."""
 MOST = TRAINED_ROBOTS[-1]
 
 
