@@ -50,6 +50,8 @@ def read_history(path: Path) -> LearningCurve:
     try:
         with file.open(newline="", encoding="utf-8") as lines:
             rows = list(csv.DictReader(lines))
+        if not rows:
+            raise ValueError("it has no rows")
         return LearningCurve(
             name=path.stem,
             episodes=tuple(int(row["episodes"]) for row in rows),
@@ -58,7 +60,7 @@ def read_history(path: Path) -> LearningCurve:
         )
     except OSError as error:
         raise ConfigError(f"{file}: {(error.strerror or str(error)).lower()}; expected a run's history.csv") from None
-    except (KeyError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, csv.Error) as error:
         raise ConfigError(f"{file}: not a run's history.csv ({error})") from None
 
 

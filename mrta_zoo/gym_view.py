@@ -82,8 +82,8 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Start an episode; arguments and errors as in the AEC form."""
-        super().reset(seed=seed)
-        self._aec.reset(seed, options)
+        self._aec.reset(seed, options)  # which says what is wrong with a seed
+        super().reset(seed=None if seed is None else int(seed))
         self._over = False
         return self._seen()
 

@@ -102,6 +102,7 @@ class NeuralPolicy:
     def fork(self) -> NeuralPolicy:
         """A policy that goes on as this one would, with draws of its own, on the same network."""
         twin = copy.copy(self)
+        twin._of_agent = {}
         twin._generator = torch.Generator()
         twin._generator.set_state(self._generator.get_state())
         return twin

@@ -24,8 +24,8 @@ SEGMENT = 12
 T = TypeVar("T", Moments, Candidates)
 
 NOT_FINITE = (
-    "the network gives probabilities that are not finite: its weights are spoilt (did training diverge?), or the "
-    "scenario is beyond what float32 can hold"
+    "the network gives probabilities that are not finite: its weights are spoilt (did training diverge?), a feature or "
+    "encoder of your own gives such numbers, or the scenario is beyond what float32 can hold"
 )
 
 

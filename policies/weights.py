@@ -23,6 +23,9 @@ from mrta_zoo.rules import MaskRule
 
 T = TypeVar("T")
 
+FLOATS = (torch.float16, torch.bfloat16, torch.float32, torch.float64)
+"""What weights may be saved as."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PolicyInfo:
@@ -31,7 +34,7 @@ class PolicyInfo:
     Attributes:
         network: architecture.
         sharing: "shared", "independent" or "by-capacity".
-        robots: number of networks, if independent.
+        robots: number of networks, if independent; >= 1.
         kinds: of robots, if by capacity, as shares of the strongest robot's.
         mask_rule: the mask rule it was trained under.
         trained: how it was trained, for people to read.
@@ -47,6 +50,10 @@ class PolicyInfo:
     trained: dict[str, Any] = field(default_factory=dict)
     format: Literal["mrta_zoo.policy"] = "mrta_zoo.policy"
     version: Literal[1] = 1
+
+    def __post_init__(self) -> None:
+        if self.robots < 1:
+            raise ConfigError(f"robots is {self.robots}; expected a whole number >= 1")
 
 
 def save_policy(path: Path, network: Network, info: PolicyInfo) -> None:
@@ -66,6 +73,10 @@ def load_weights(path: Path) -> tuple[Network, PolicyInfo]:
     path = Path(path)
     info = read_json(path.with_suffix(".json"), PolicyInfo)
     tensors = read_tensors(path)
+    if info.sharing == "independent":  # before as many networks are made as the JSON says
+        there = len({name.split(".")[1] for name in tensors if name.startswith("robots.")})
+        if there != info.robots:
+            raise ConfigError(f"{path}: holds networks of {there} robots; its JSON says that robots is {info.robots}")
     network = build_network(info.network, info.sharing, info.robots, seed=0, kinds=info.kinds)
     load_state(network, tensors, path)
     return network.eval(), info
@@ -130,7 +141,7 @@ def load_state(network: Network, tensors: dict[str, torch.Tensor], path: Path) -
     """Put tensors into a network, all of them or none.
 
     Raises:
-        ConfigError: if a tensor is missing, left over, of another shape, or not finite.
+        ConfigError: if a tensor is missing, left over, of another shape, not of floating point, or not finite.
     """
     expected = network.state_dict()
     for name, tensor in expected.items():
@@ -141,6 +152,8 @@ def load_state(network: Network, tensors: dict[str, torch.Tensor], path: Path) -
                 f"{path}: tensor {name!r} has shape {tuple(tensors[name].shape)}; "
                 f"the architecture needs {tuple(tensor.shape)}"
             )
+        if tensors[name].dtype not in FLOATS:
+            raise ConfigError(f"{path}: tensor {name!r} holds {tensors[name].dtype}; expected float16, 32 or 64")
         if not torch.isfinite(tensors[name]).all():
             raise ConfigError(f"{path}: tensor {name!r} holds numbers that are not finite")
     for name in tensors:

@@ -38,6 +38,9 @@ from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import most_robots
 from mrta_zoo.train.reinforce import Reinforce, RunOptions, Validation
 
+MOMENTS = ("step", "exp_avg", "exp_avg_sq")
+"""What Adam keeps of each weight."""
+
 
 @dataclass(frozen=True, slots=True)
 class RunState:
@@ -55,11 +58,11 @@ def start(folder: Path, config: TrainConfig, options: RunOptions | None = None) 
     Raises:
         ConfigError: if the folder already holds a run, or can't be written.
     """
-    if os.path.lexists(folder / "config.json") or os.path.lexists(folder / "checkpoints"):
+    if os.path.lexists(folder / "config.json") or _entries(folder / "checkpoints"):
         raise ConfigError(f"{folder} already holds a run; go on with it (--resume), or choose another folder")
     run = Reinforce(config, options=options)  # before anything is written: it may refuse the configuration
     try:
-        (folder / "checkpoints").mkdir(parents=True, exist_ok=True)
+        folder.mkdir(parents=True, exist_ok=True)
         write_json(folder / "config.json", config)
     except OSError as error:
         raise ConfigError(f"{folder}: can't write a run there ({error.strerror})") from None
@@ -83,12 +86,14 @@ def resume(folder: Path, options: RunOptions | None = None) -> tuple[Reinforce, 
     at = folder / "checkpoints" / _name(numbers[-1])
     state = read_json(at / "state.json", RunState)
     load_state(run.network, read_tensors(at / "network.safetensors"), at / "network.safetensors")
-    _load_optimizer(run, at / "optimizer.safetensors")
+    _load_optimizer(run, at / "optimizer.safetensors", state.update)
     # Before its first update of REINFORCE a baseline may have nothing to remember yet.
     if config.baseline != "samples" and (run.baseline.state() or state.update > config.imitation_updates):
         run.baseline.restore(read_tensors(at / "baseline.safetensors"), at / "baseline.safetensors")
     if state.update != numbers[-1] or state.update > config.total_updates:
         raise ConfigError(f"{at / 'state.json'}: update is {state.update}; expected {numbers[-1]}, as the folder says")
+    if not state.history:
+        raise ConfigError(f"{at / 'state.json'}: history is empty; the checkpoint is damaged")
     run.update = state.update
     run.history = list(state.history)
     return run, state.seconds
@@ -118,7 +123,18 @@ def seconds_spent(folder: Path) -> float:
 
 
 def save(folder: Path, run: Reinforce, seconds: float) -> None:
-    """Write a checkpoint of the run, which was just validated, drop old ones, and keep the best policy."""
+    """Write a checkpoint of the run, which was just validated, drop old ones, and keep the best policy.
+
+    Raises:
+        ConfigError: if it cannot be written; the last checkpoint is then as before.
+    """
+    try:
+        _save(folder, run, seconds)
+    except OSError as error:
+        raise ConfigError(f"{folder}: can't write a checkpoint there ({error.strerror})") from None
+
+
+def _save(folder: Path, run: Reinforce, seconds: float) -> None:
     final = folder / "checkpoints" / _name(run.update)
     partial = final.with_name(final.name + ".partial")
     shutil.rmtree(partial, ignore_errors=True)
@@ -179,8 +195,11 @@ def info_of(config: TrainConfig, trained: dict[str, Any]) -> PolicyInfo:
 
 
 def _checkpoints(folder: Path) -> list[int]:
-    names = (each.name for each in (folder / "checkpoints").iterdir()) if (folder / "checkpoints").exists() else ()
-    return sorted(int(name) for name in names if name.isdigit())
+    return sorted(int(name) for name in _entries(folder / "checkpoints") if name.isascii() and name.isdigit())
+
+
+def _entries(folder: Path) -> list[str]:
+    return [each.name for each in folder.iterdir()] if folder.is_dir() else []
 
 
 def _name(update: int) -> str:
@@ -195,17 +214,29 @@ def _optimizer_tensors(run: Reinforce) -> dict[str, torch.Tensor]:
     return tensors
 
 
-def _load_optimizer(run: Reinforce, path: Path) -> None:
+def _load_optimizer(run: Reinforce, path: Path, update: int) -> None:
     tensors = read_tensors(path)
     for name, parameter in run.network.named_parameters():
-        keys = ("step", "exp_avg", "exp_avg_sq")
-        if not tensors:  # a checkpoint from before the first update
+        state = {key: tensors.pop(f"{name}/{key}") for key in MOMENTS if f"{name}/{key}" in tensors}
+        # Adam knows nothing of what has had no gradient: before the first update, or of robots that never decided.
+        if not state and (update == 0 or run.config.sharing != "shared"):
             continue
-        missing = [key for key in keys if f"{name}/{key}" not in tensors]
-        if missing:
-            raise ConfigError(f"{path}: {name}/{missing[0]} is missing; the checkpoint is damaged")
-        state = {key: tensors[f"{name}/{key}"] for key in keys}
+        for key, shape in zip(MOMENTS, ((), parameter.shape, parameter.shape), strict=True):
+            if key not in state:
+                raise ConfigError(f"{path}: {name}/{key} is missing; the checkpoint is damaged")
+            value = state[key]
+            if value.dtype != torch.float32 or value.shape != shape or not torch.isfinite(value).all():
+                raise ConfigError(
+                    f"{path}: {name}/{key} is no finite float32 tensor of shape {tuple(shape)}; "
+                    "the checkpoint is damaged"
+                )
+        if not 1 <= float(state["step"]) <= update or (state["exp_avg_sq"] < 0).any():
+            raise ConfigError(f"{path}: {name} has impossible moments; the checkpoint is damaged")
         # Adam keeps its step counter on the CPU, its moments beside the parameter.
         run.optimizer.state[parameter] = {
             key: value if key == "step" else value.to(parameter.device) for key, value in state.items()
         }
+    if tensors:
+        raise ConfigError(f"{path}: tensor {next(iter(tensors))!r} belongs to no weight; the checkpoint is damaged")
+    if update and not run.optimizer.state:
+        raise ConfigError(f"{path}: there is nothing in it; the checkpoint is damaged")

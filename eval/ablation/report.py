@@ -10,7 +10,7 @@ import pandas as pd
 from mrta_zoo.eval.ablation.claims import Claim, claims_of, gap_by_robots, verdicts
 from mrta_zoo.eval.ablation.figures import curves_data, draw_curves, draw_forest, forest_data
 from mrta_zoo.eval.ablation.questions import ENCODER
-from mrta_zoo.eval.ablation.study import HARDLY, Comparison, Study
+from mrta_zoo.eval.ablation.study import Comparison, Study
 from mrta_zoo.eval.ablation.variants import ROBOTS
 from mrta_zoo.eval.experiment import Manifest
 from mrta_zoo.eval.machine import Session
@@ -18,6 +18,7 @@ from mrta_zoo.eval.reproduce import wording
 from mrta_zoo.eval.reproduce.parts import Picture, Report, Section, Table
 from mrta_zoo.eval.statistics import LEVEL
 from mrta_zoo.eval.training.effects import arrange, equal_weights, run_values
+from mrta_zoo.eval.training.hardly import hardly_trained, warning
 from mrta_zoo.eval.training.study import command_line, trained_on
 
 INTERVALS = (
@@ -44,23 +45,11 @@ def make_report(study: Study, manifest: Manifest, sessions: Sequence[Session]) -
         summary=(
             *(claim.sentence for claim in claims),
             *(_in_short(study, question.name, comparisons) for question in study.questions),
-            *_hardly(study),
+            *warning(hardly_trained(study.variants, study.curves)),
         ),
         sections=tuple(sections),
         made=_made(study, manifest, sessions),
     )
-
-
-def _hardly(study: Study) -> list[str]:
-    """A warning, if there is cause for one."""
-    found = study.hardly_trained()
-    if not found:
-        return []
-    return [
-        f"Beware: {wording.listed(found)} {'were' if len(found) > 1 else 'was'} hardly trained in so few updates: "
-        f"validation gained less than {HARDLY:g} point. What is said of differences between such variants holds for "
-        "networks about as they start, and is no answer to what a part is worth once trained; more --updates are."
-    ]
 
 
 def _in_short(study: Study, name: str, comparisons: Sequence[Comparison]) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from statistics import fmean
 
 from mrta_zoo.eval.ablation.questions import Question
 from mrta_zoo.eval.ablation.variants import ROBOTS, Budget, Variant
@@ -12,9 +11,6 @@ from mrta_zoo.eval.plot_history import LearningCurve
 from mrta_zoo.eval.statistics import SIGNIFICANT, holm
 from mrta_zoo.eval.training.effects import Effect, Runs, arrange, effect_of, equal_weights
 from mrta_zoo.eval.training.rows import RunRow
-
-HARDLY = 1.0
-"""Percentage points of validation completion; a variant that training has improved by less has hardly been trained."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,19 +66,6 @@ class Study:
         """The runs of a question's variants."""
         found = arrange(row for row in self.rows if row.distribution == distribution)
         return {name: found[name, distribution] for name in question.variants}
-
-    def hardly_trained(self) -> list[str]:
-        """Variants whose best validation is, in the mean over runs, hardly better than that before the first update."""
-        found = []
-        for name in self.variants:
-            gains = [
-                100 * (max(curve.completion) - curve.completion[0])
-                for (variant, _), curve in self.curves.items()
-                if variant == name
-            ]
-            if fmean(gains) < HARDLY:
-                found.append(name)
-        return found
 
     def comparisons(self) -> list[Comparison]:
         """Every variant of every question against its reference."""

@@ -72,7 +72,9 @@ def unlikeness(study: Study) -> list[Unlikeness]:
         ]
         across = [pair for of_run in answers for pair in combinations(of_run, 2)]
         again = [pair for of_network in zip(*answers, strict=True) for pair in combinations(of_network, 2)]
-        found += [compared(arm, name, pairs) for name, pairs in ((ACROSS, across), (AGAIN, again)) if pairs]
+        for name, pairs in ((ACROSS, across), (AGAIN, again)):
+            if pairs and len(pairs[0][0]):  # with a task a mission there never was a choice
+                found.append(compared(arm, name, pairs))
     return found
 
 

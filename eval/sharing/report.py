@@ -15,6 +15,7 @@ from mrta_zoo.eval.sharing.choices import ACROSS, AGAIN, SCENARIOS, Unlikeness, 
 from mrta_zoo.eval.sharing.figures import curves_data, draw_by_robots, draw_curves
 from mrta_zoo.eval.sharing.study import Comparison, Study
 from mrta_zoo.eval.statistics import LEVEL
+from mrta_zoo.eval.training.hardly import hardly_trained, warning
 from mrta_zoo.eval.training.study import command_line, trained_on
 
 INTERVALS = (
@@ -39,11 +40,12 @@ def make_report(study: Study, manifest: Manifest, sessions: Sequence[Session]) -
             *(_in_short(study, question.name, comparisons) for question in study.questions),
             *_unseen(study),
             *_choices_in_short(choices),
+            *warning(hardly_trained(study.arms, study.curves)),
         ),
         sections=(
             _differences(study, comparisons),
             _by_robots(study),
-            _choices(choices),
+            *([_choices(choices)] if choices else ()),
             _costs(study, sessions),
             _curves(study),
         ),
@@ -70,7 +72,7 @@ def _in_short(study: Study, name: str, comparisons: Sequence[Comparison]) -> str
     shared = found[0].question.arms[0]
     parts = [
         f"{each.arm} {wording.estimate(each.effect.difference, signed=True)} points"
-        + (f", p {_equals(wording.p_value(each.adjusted))}, {'sure' if each.sure else 'not sure'}"
+        + (f", adjusted p {_equals(wording.p_value(each.adjusted))}, {'sure' if each.sure else 'not sure'}"
            if each.adjusted is not None else "")
         for each in found
     ]  # fmt: skip
@@ -208,7 +210,7 @@ def _choices(choices: Sequence[Unlikeness]) -> Section:
         }
         for each in choices
     ]
-    decisions = choices[0].decisions if choices else 0
+    decisions = choices[0].decisions
     table = Table(
         name="choices",
         caption=(

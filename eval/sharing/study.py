@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from statistics import fmean
@@ -16,10 +16,10 @@ from mrta_zoo.eval.sharing.arms import TRAINED_ROBOTS, Arm, Budget, Question
 from mrta_zoo.eval.statistics import SIGNIFICANT, Estimate, estimate_mean, holm
 from mrta_zoo.eval.training.effects import Effect, Runs, arrange, effect_of, equal_weights
 from mrta_zoo.eval.training.held_out import Distribution, HeldOut
+from mrta_zoo.eval.training.job import seconds_of, trained_policy
 from mrta_zoo.eval.training.rows import RunRow
-from mrta_zoo.policies.neural import NeuralPolicy, load_policy
+from mrta_zoo.policies.neural import NeuralPolicy
 from mrta_zoo.policies.registry import make_solver
-from mrta_zoo.train.checkpoint import seconds_spent
 from mrta_zoo.verify import verify
 
 DISTRIBUTION: Distribution = "taptc"
@@ -83,11 +83,17 @@ class Study:
     @cached_property
     def policies(self) -> dict[tuple[str, int], NeuralPolicy]:
         """What each (arm, seed) has learned."""
-        return {key: load_policy(folder) for key, folder in self.folders.items()}
+        return {key: trained_policy(folder) for key, folder in self.folders.items()}
 
     def mean(self, arm: str, robots: Sequence[int]) -> Estimate:
-        """% completed by an arm, mean over numbers of robots, with an interval that knows of runs and scenarios."""
-        return self._effect({arm: 1.0}, robots).difference
+        """% completed by an arm, mean over numbers of robots, with an interval that knows of runs and scenarios.
+
+        Student's intervals may reach beyond what a share can be; there they end.
+        """
+        found = self._effect({arm: 1.0}, robots).difference
+        if found.low is None or found.high is None:
+            return found
+        return replace(found, low=max(found.low, 0.0), high=min(found.high, 100.0))
 
     def nearest(self, robots: int) -> Estimate:
         """% completed by the nearest-feasible rule, with an interval that knows of scenarios."""
@@ -131,7 +137,7 @@ class Study:
 
     def seconds(self, arm: str) -> float:
         """Wall-clock time of a run, mean over runs."""
-        return fmean(seconds_spent(self.folders[arm, seed]) for seed in range(self.seeds))
+        return fmean(seconds_of(self.folders[arm, seed]) for seed in range(self.seeds))
 
     def decisions(self, arm: str) -> float:
         """About how many decisions each network learned from, mean over its networks.

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import shutil
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from mrta_zoo.eval.rows_file import RowsFile
 from mrta_zoo.eval.training.held_out import Distribution, HeldOut
 from mrta_zoo.eval.training.rows import RunRow
 from mrta_zoo.io.records import write_records
-from mrta_zoo.policies.neural import load_policy
+from mrta_zoo.policies.neural import NeuralPolicy, load_policy
 from mrta_zoo.train import checkpoint
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.reinforce import Reinforce, Validation
@@ -73,7 +74,7 @@ def perform(job: Job, tell: Tell) -> None:
 
 def evaluate(job: Job) -> list[RunRow]:
     """Greedy plans by the run's best policy (by validation), every one scored by the verifier."""
-    policy = load_policy(job.folder)
+    policy = trained_policy(job.folder)
     rows = []
     for distribution in job.distributions:
         for robots in job.held_out.robots:
@@ -84,6 +85,35 @@ def evaluate(job: Job) -> list[RunRow]:
     return rows
 
 
+def trained_policy(folder: Path) -> NeuralPolicy:
+    """What a finished run has learned.
+
+    Raises:
+        ConfigError: if its files are lost or damaged.
+    """
+    with mendable(folder):
+        return load_policy(folder)
+
+
+def seconds_of(folder: Path) -> float:
+    """Wall-clock time that a run's training took.
+
+    Raises:
+        ConfigError: if its files are lost or damaged.
+    """
+    with mendable(folder):
+        return checkpoint.seconds_spent(folder)
+
+
+@contextmanager
+def mendable(folder: Path) -> Iterator[None]:
+    """Say what to do about a run whose files are lost or damaged."""
+    try:
+        yield
+    except ConfigError as error:
+        raise ConfigError(f"{error}; to have this run done again, delete {folder} and repeat the command") from None
+
+
 def rows_of(job: Job) -> list[RunRow]:
     """The rows of a finished run.
 
@@ -91,6 +121,12 @@ def rows_of(job: Job) -> list[RunRow]:
         ConfigError: if they are not those that its job asks for.
     """
     rows = RowsFile(job.rows_file, RunRow).rows
+    for row in rows:
+        if row.tasks != job.held_out.tasks or not 0 <= row.completed <= row.tasks:
+            raise ConfigError(
+                f"{job.rows_file} has {row.completed} of {row.tasks} tasks completed; expected 0 to "
+                f"{job.held_out.tasks} of {job.held_out.tasks}; delete the file, and run the command again"
+            )
     wanted = [
         (job.variant, job.seed, distribution, robots, index)
         for distribution in job.distributions
@@ -108,4 +144,5 @@ def _begin(job: Job) -> tuple[Reinforce, float]:
         return checkpoint.start(job.folder, job.config), 0.0
     if checkpoint.saved_config(job.folder) != job.config:
         raise ConfigError(f"{job.folder} holds a run of another configuration; expected a new folder for the study")
-    return checkpoint.resume(job.folder)
+    with mendable(job.folder):
+        return checkpoint.resume(job.folder)

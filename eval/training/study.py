@@ -13,7 +13,7 @@ from mrta_zoo.eval.machine import Session, this_session
 from mrta_zoo.eval.plot_history import LearningCurve, read_history
 from mrta_zoo.eval.rows_file import RowsFile
 from mrta_zoo.eval.threads import cpu_threads
-from mrta_zoo.eval.training.job import Job, rows_of
+from mrta_zoo.eval.training.job import Job, mendable, rows_of
 from mrta_zoo.eval.training.pool import train_all
 from mrta_zoo.eval.training.rows import RunRow
 from mrta_zoo.io.records import write_records
@@ -84,7 +84,11 @@ def perform_study(
 
 def read_curves(jobs: Iterable[Job]) -> dict[tuple[str, int], LearningCurve]:
     """The learning curve of each (variant, seed)."""
-    return {(job.variant, job.seed): read_history(job.folder) for job in jobs}
+    curves = {}
+    for job in jobs:
+        with mendable(job.folder):
+            curves[job.variant, job.seed] = read_history(job.folder)
+    return curves
 
 
 def command_line(manifest: Manifest, *names: str) -> tuple[tuple[str, str], ...]:

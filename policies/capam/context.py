@@ -46,6 +46,7 @@ class Context(nn.Module):
     def forward(self, tasks: Tasks, moments: Moments) -> Tensor:
         """The query of each decision: (S, G, h)."""
         own_xy = moments.of_ego(moments.xy)
+        shape, device = moments.elapsed.shape, moments.elapsed.device
         horizon = tasks.horizon[:, None].expand_as(moments.elapsed)
         work_unit = tasks.work_unit[:, None].expand_as(moments.elapsed)
         own = torch.stack(
@@ -57,7 +58,7 @@ class Context(nn.Module):
                 moments.of_ego(moments.capacity),
                 *own_xy.unbind(-1),
                 *(
-                    of_shape("context feature", name, feature(tasks, moments), moments.elapsed.shape).float()
+                    of_shape("context feature", name, feature(tasks, moments), shape, device).float()
                     for name, feature in self.more.items()
                 ),
             ),

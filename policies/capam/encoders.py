@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from torch import nn
 
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.attention_encoder import AttentionEncoder
 from mrta_zoo.policies.capam.capsule_encoder import CapsuleEncoder
 from mrta_zoo.policies.capam.config import NetworkConfig
@@ -34,6 +35,9 @@ def build_encoder(features: int, config: NetworkConfig) -> nn.Module:
     """The encoder that `config` names, for nodes of so many features.
 
     Raises:
-        ConfigError: if there is none of that name.
+        ConfigError: if there is none of that name, or what it builds is no module.
     """
-    return ENCODERS.find(config.encoder)(features, config)
+    encoder: object = ENCODERS.find(config.encoder)(features, config)
+    if not isinstance(encoder, nn.Module):
+        raise ConfigError(f"encoder {config.encoder!r} builds a {type(encoder).__name__}; expected a torch.nn.Module")
+    return encoder

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TypeVar
 
+import torch
 from torch import Tensor
 
 from mrta_zoo.errors import ConfigError
@@ -63,7 +64,7 @@ class Named(dict[str, T]):
         return self[name]
 
 
-def of_shape(kind: str, name: str, values: object, shape: tuple[int, ...]) -> Tensor:
+def of_shape(kind: str, name: str, values: object, shape: tuple[int, ...], device: torch.device) -> Tensor:
     """What a feature or an encoder gave, if it is what it should be.
 
     Args:
@@ -71,11 +72,15 @@ def of_shape(kind: str, name: str, values: object, shape: tuple[int, ...]) -> Te
         name: of it.
         values: what it gave.
         shape: what it should have.
+        device: where it should be.
 
     Raises:
-        ConfigError: if it is no tensor of that shape.
+        ConfigError: if it is no tensor of that shape, there, dense and of real numbers.
     """
     if not isinstance(values, Tensor) or values.shape != shape:
         gave = f"shape {tuple(values.shape)}" if isinstance(values, Tensor) else f"a {type(values).__name__}"
         raise ConfigError(f"{kind} {name!r} gave {gave}; expected a tensor of shape {tuple(shape)}")
+    if values.layout is not torch.strided or values.is_complex() or values.device != device:
+        gave = f"{values.layout} of {values.dtype} on {values.device}".replace("torch.", "")
+        raise ConfigError(f"{kind} {name!r} gave {gave}; expected a dense tensor of real numbers on {device}")
     return values

@@ -75,7 +75,10 @@ class AllocationNetwork(nn.Module):
         embeddings = self.encoder(
             node_features(tasks, self.config.node_features), tasks.exists, graph_properties(tasks)
         )
-        of_shape("encoder", self.config.encoder, embeddings, (*tasks.exists.shape, self.config.embedding))
+        shape = (*tasks.exists.shape, self.config.embedding)
+        of_shape("encoder", self.config.encoder, embeddings, shape, tasks.exists.device)
+        if embeddings.dtype not in (torch.float16, torch.bfloat16):  # of which autocast takes care
+            embeddings = embeddings.float()
         if isinstance(self.decoder, AttentionDecoder):
             return Encoding(tasks, keys=self.decoder.keys(embeddings))
         return Encoding(tasks, embeddings=self.decoder.encoded(embeddings), neighbourhood=Neighbourhood.of(tasks))

@@ -34,6 +34,6 @@ def node_features(tasks: Tasks, names: tuple[str, ...]) -> Tensor:
     Raises:
         ConfigError: if there is no feature of some name.
     """
-    shape = tasks.exists.shape
-    columns = [of_shape("node feature", name, NODE_FEATURES.find(name)(tasks), shape).float() for name in names]
+    shape, device = tasks.exists.shape, tasks.exists.device
+    columns = [of_shape("node feature", name, NODE_FEATURES.find(name)(tasks), shape, device).float() for name in names]
     return torch.stack(columns, -1)

@@ -110,6 +110,14 @@ def test_a_mission_in_which_nothing_can_be_done() -> None:
     assert view.step(0)[1:4] == (-1.0, True, False)
 
 
+def test_seeds_are_those_of_the_aec_form() -> None:
+    env = ActingRobotEnv(generator=GENERATOR)
+    assert str(env.reset(seed=np.int64(3))) == str(env.reset(seed=3))  # type: ignore[arg-type]
+    for seed in (-1, 1.5, "a"):
+        with pytest.raises(ConfigError, match="seed is"):
+            env.reset(seed=seed)  # type: ignore[arg-type]
+
+
 def test_before_the_first_reset() -> None:
     with pytest.raises(ActionError, match="call reset"):
         ActingRobotEnv().step(0)

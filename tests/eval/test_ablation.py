@@ -17,9 +17,9 @@ import pytest
 
 from mrta_zoo.cli import main
 from mrta_zoo.eval.ablation.questions import QUESTIONS, needed
-from mrta_zoo.eval.ablation.study import Study
 from mrta_zoo.eval.ablation.variants import CAPAM, REFERENCE, ROBOTS, Budget, all_variants
 from mrta_zoo.eval.plot_history import LearningCurve
+from mrta_zoo.eval.training.hardly import hardly_trained, warning
 from mrta_zoo.eval.training.held_out import HeldOut
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.train.config import TrainConfig
@@ -116,9 +116,9 @@ def test_variants_that_hardly_learned_are_named() -> None:
         ("am", 0): LearningCurve("", (0, 8), (0.5, 0.504)),
         ("am", 1): LearningCurve("", (0, 8), (0.5, 0.506)),
     }
-    variants = {name: all_variants(Budget())[name] for name in ("capam", "am")}
-    study = Study(questions=(), variants=variants, budget=Budget(), seeds=2, rows=(), curves=curves)
-    assert study.hardly_trained() == ["am"]
+    assert hardly_trained(("capam", "am"), curves) == ["am"]
+    assert "Beware: am was hardly trained" in warning(["am"])[0]
+    assert warning([]) == []
 
 
 def test_a_finished_study_is_not_repeated(straight: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -201,6 +201,13 @@ def test_a_failure_in_a_process_is_said_in_a_sentence(tmp_path: Path, capsys: py
     (damaged / "rows.csv").write_text("variant\n")
     assert "line 1: the columns are ['variant']" in fails(capsys, *arguments, "1")
     whole = (out / "runs" / "capam-p1-seed0" / "rows.csv").read_text().splitlines(keepends=True)
+    (damaged / "rows.csv").write_text("".join(whole).replace("capam-p1", "capam").replace(",6\n", ",0\n"))
+    assert "of 0 tasks completed; expected 0 to 6 of 6; delete the file" in fails(capsys, *arguments, "1")
     (damaged / "rows.csv").write_text("".join(whole).replace("capam-p1", "capam"))
     (out / "runs" / "capam-p1-seed0" / "rows.csv").write_text("".join(whole[:-1]))
     assert "capam-p1-seed0/rows.csv holds other rows than its run has" in fails(capsys, *arguments, "1")
+    (out / "runs" / "capam-p1-seed0" / "rows.csv").write_text("".join(whole))
+    (damaged / "rows.csv").unlink()
+    (damaged / "policy.safetensors").unlink()
+    (damaged / "checkpoints" / "00000004" / "network.safetensors").unlink()
+    assert f"to have this run done again, delete {damaged} and repeat" in fails(capsys, *arguments, "1")

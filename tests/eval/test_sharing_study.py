@@ -142,3 +142,34 @@ def test_one_question_and_one_seed(tmp_path: Path, capsys: pytest.CaptureFixture
     assert "(too few)" in capsys.readouterr().out  # no intervals
     assert main(["sharing", "--out", str(out), *TINY]) == 2
     assert "only was decisions, now it is episodes,decisions" in capsys.readouterr().err
+
+
+def test_where_nothing_could_be_chosen_nothing_is_compared(tmp_path: Path) -> None:
+    # With one task a mission no robot ever has two to choose from.
+    out = tmp_path / "one task"
+    tiny = [*TINY, "--only", "episodes", "--seeds", "1", "--tasks", "1"]
+    assert main(["sharing", "--out", str(out), *tiny]) == 0
+    report = (out / "report.md").read_text(encoding="utf-8")
+    assert "nan" not in report
+    assert "How differently they choose" not in report
+    assert "Beware" in report  # of two updates
+
+
+def test_damaged_histories_are_told_in_a_sentence(
+    study: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "damaged"
+    shutil.copytree(study, out, ignore=shutil.ignore_patterns(".lock"))
+    history = out / "runs" / "shared-seed0" / "history.csv"
+    history.write_bytes(history.read_bytes()[:40])  # ends in the header
+    assert main(["sharing", "--out", str(out), *TINY]) == 2
+    error = capsys.readouterr().err
+    assert "not a run's history.csv (it has no rows); to have this run done again, delete" in error
+    assert error.count("\n") == 1
+
+
+def test_intervals_of_shares_end_at_none_and_all(study: Path) -> None:
+    # Two runs on two scenarios: Student's intervals alone would reach far beyond.
+    for line in lines(study / "completion.csv"):
+        if line["low"]:
+            assert 0 <= float(line["low"]) <= float(line["percent"]) <= float(line["high"]) <= 100

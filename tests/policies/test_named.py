@@ -99,15 +99,35 @@ def test_registering_again_replaces() -> None:
         (NODE_FEATURES, "zero", lambda tasks: 3.0, r"node feature 'zero' gave a float; expected .* of shape \(1, 10\)"),
         (CONTEXT_FEATURES, "choices", lambda tasks, moments: moments.mask, r"context feature 'choices' gave shape"),
         (ENCODERS, "mine", lambda features, config: LinearEncoder(features, 8), r"encoder 'mine' gave shape"),
+        (NODE_FEATURES, "zero", lambda tasks: tasks.deadline.to("meta"), "gave strided of float32 on meta; "),
+        (NODE_FEATURES, "zero", lambda tasks: tasks.deadline.to_sparse(), "gave sparse_coo of float32 on cpu"),
+        (NODE_FEATURES, "zero", lambda tasks: tasks.deadline + 1j, "gave strided of complex64 on cpu"),
+        (ENCODERS, "mine", lambda features, config: None, "encoder 'mine' builds a NoneType; expected a to"),
     ],
 )  # fmt: skip
 def test_what_gives_another_shape_is_named(registry: Any, name: str, entry: Any, message: str) -> None:
     registry.register(name)(entry)
+    with pytest.raises(ConfigError, match=message):
+        asked()
+
+
+@pytest.mark.usefixtures("registered")
+def test_an_encoder_may_count_in_other_numbers() -> None:
+    class Double(LinearEncoder):
+        def forward(self, *given: Tensor) -> Tensor:
+            return super().forward(*given).double()
+
+    ENCODERS.register("mine")(lambda features, config: Double(features, config.embedding))
+    assert asked().dtype == torch.float32
+
+
+def asked() -> Tensor:
+    """What a network of one's own makes of a mission's first moment."""
     batch = ScenarioBatch.of([TaptcGenerator(tasks=(10, 10), robots=(2, 2))(np.random.default_rng(0))])
     tasks, moments = Tasks.of_batch(batch), Moments.of_batch(BatchMission(batch))
     network = build_network(OWN, "shared", 1, seed=0)
-    with pytest.raises(ConfigError, match=message):
-        network(network.encode(tasks), moments)
+    found: Tensor = network(network.encode(tasks), moments)
+    return found
 
 
 def test_the_candidate_decoder_has_no_context() -> None:

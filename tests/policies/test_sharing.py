@@ -143,6 +143,9 @@ def test_the_policy_of_one_robot() -> None:
     asked = [independent.for_agent(f"robot_{robot}").decide(observation).probabilities for robot in range(4)]
     assert np.array_equal(asked[0], independent.decide(observation).probabilities)
     assert not np.allclose(asked[0], asked[3])  # another robot's network, asked what robot 0 sees
+    twin = independent.fork()
+    assert twin.for_agent("robot_3") is not independent.for_agent("robot_3")  # it has draws of its own
+    assert twin.for_agent("robot_3").network is independent.network.of_robot(3)
     for name in ("robot", "robot_", "robot_x", "robot_-1", "3", "agent_0"):
         with pytest.raises(ConfigError, match=rf"there is no agent '{name}'; expected robot_0, robot_1"):
             shared.for_agent(name)

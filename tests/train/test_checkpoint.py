@@ -9,15 +9,18 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import torch
+from torch import Tensor
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.neural import load_policy
+from mrta_zoo.policies.weights import read_tensors, write_tensors
 from mrta_zoo.train import checkpoint
 from mrta_zoo.train.cli import train_command
 from mrta_zoo.train.config import TrainConfig
@@ -155,6 +158,96 @@ def test_damaged_run_is_told_in_a_sentence(tmp_path: Path, file: str, content: b
     path.unlink() if content is None else path.write_bytes(content)
     with pytest.raises(ConfigError, match=sentence):
         checkpoint.resume(tmp_path)
+
+
+FIRST = "encoder.embed.weight"
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda t: {}, "is missing"),
+        (lambda t: {**t, f"{FIRST}/exp_avg": torch.zeros(3)}, "is no finite float32 tensor of shape"),
+        (lambda t: {**t, f"{FIRST}/exp_avg": t[f"{FIRST}/exp_avg"].double()}, "is no finite float32 tensor of shape"),
+        (lambda t: {**t, f"{FIRST}/step": torch.zeros(3)}, r"is no finite float32 tensor of shape \(\)"),
+        (lambda t: {**t, f"{FIRST}/step": torch.tensor(-5.0)}, "has impossible moments"),
+        (lambda t: {**t, f"{FIRST}/exp_avg_sq": t[f"{FIRST}/exp_avg_sq"] - 1}, "has impossible moments"),
+        (lambda t: {**t, f"{FIRST}/exp_avg": t[f"{FIRST}/exp_avg"] * torch.nan}, "is no finite float32 tensor"),
+        (lambda t: {**t, "more": torch.zeros(1)}, "tensor 'more' belongs to no weight"),
+    ],
+)  # fmt: skip
+def test_a_damaged_optimizer_is_told_in_a_sentence(
+    tmp_path: Path, change: Callable[[dict[str, Tensor]], dict[str, Tensor]], sentence: str
+) -> None:
+    file = _saved(tmp_path) / "optimizer.safetensors"
+    write_tensors(file, change(read_tensors(file)))
+    with pytest.raises(ConfigError, match=sentence):
+        checkpoint.resume(tmp_path)
+
+
+def test_what_could_not_be_begun_can_be_begun_again(tmp_path: Path) -> None:
+    (tmp_path / "checkpoints").mkdir()  # as an earlier version left it where the disk was full
+    checkpoint.start(tmp_path, TINY)
+
+
+def test_robots_that_never_decided_have_nothing_to_remember(tmp_path: Path) -> None:
+    # The first update sees a single scenario, of a robot or two: the last of three networks has no gradient yet.
+    run = checkpoint.start(tmp_path, replace(TINY, sharing="independent", scenarios=1, seed=1))
+    run.validate()
+    checkpoint.save(tmp_path, run, 0.0)
+    run.step()
+    run.validate()
+    checkpoint.save(tmp_path, run, 0.0)
+    resumed, _ = checkpoint.resume(tmp_path)
+    assert len(resumed.optimizer.state) == len(run.optimizer.state) < len(list(run.network.parameters()))
+
+
+def test_other_files_among_checkpoints_are_let_be(tmp_path: Path) -> None:
+    (_saved(tmp_path).parent / "²").mkdir()
+    assert checkpoint.resume(tmp_path)[0].update == 1
+
+
+def test_a_checkpoint_without_history_is_damaged(tmp_path: Path) -> None:
+    file = _saved(tmp_path) / "state.json"
+    file.write_text('{"update": 1, "seconds": 1, "history": []}')
+    with pytest.raises(ConfigError, match="history is empty; the checkpoint is damaged"):
+        checkpoint.resume(tmp_path)
+
+
+def test_a_full_disk_is_told_with_the_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run = checkpoint.start(tmp_path, TINY)
+    run.validate()
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(checkpoint, "write_tensors", full)
+    with pytest.raises(ConfigError, match=r"can't write a checkpoint there \(No space left on device\)"):
+        checkpoint.save(tmp_path, run, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("dtype", "message"),
+    [(torch.int64, "holds torch.int64; expected float"), (torch.float8_e4m3fn, "holds torch.float8_e4m3fn")],
+)
+def test_weights_of_other_numbers_are_refused(tmp_path: Path, dtype: torch.dtype, message: str) -> None:
+    _saved(tmp_path)
+    tensors = read_tensors(tmp_path / "policy.safetensors")
+    write_tensors(tmp_path / "policy.safetensors", {name: value.to(dtype) for name, value in tensors.items()})
+    with pytest.raises(ConfigError, match=message):
+        load_policy(tmp_path)
+
+
+def test_no_more_networks_are_made_than_there_are(tmp_path: Path) -> None:
+    run = checkpoint.start(tmp_path, replace(TINY, sharing="independent"))
+    run.validate()
+    checkpoint.save(tmp_path, run, 0.0)
+    info = json.loads((tmp_path / "policy.json").read_text())
+    for robots, message in ((10**9, r"holds networks of \d robots; its JSON says that robots is 1000000000"),
+                            (0, "robots is 0; expected a whole number >= 1")):  # fmt: skip
+        (tmp_path / "policy.json").write_text(json.dumps({**info, "robots": robots}))
+        with pytest.raises(ConfigError, match=message):
+            load_policy(tmp_path)
 
 
 @pytest.mark.parametrize(
