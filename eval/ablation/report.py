@@ -143,7 +143,7 @@ def _differences(study: Study, comparisons: list[Comparison]) -> Section:
     data = forest_data(comparisons)
     caption = (
         "Mean % of tasks completed of each variant minus that of its reference, in percentage points. "
-        f"{INTERVALS} P-values are adjusted within each question (Holm)."
+        f"{INTERVALS} P-values are adjusted within each question (Holm), intervals are not."
     )
     shown = pd.DataFrame(
         [

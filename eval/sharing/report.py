@@ -147,7 +147,7 @@ def _differences(study: Study, comparisons: Sequence[Comparison]) -> Section:
         caption=(
             f"Mean % of tasks completed of each way of sharing minus that of the shared network, percentage points; "
             f"then the same by number of robots, whose intervals are in the CSV. {INTERVALS} P-values are adjusted "
-            "within each question (Holm)."
+            "within each question (Holm), intervals are not."
         ),
         shown=pd.DataFrame(shown),
         data=pd.DataFrame(data),
