@@ -145,13 +145,20 @@ def measure(
         what: said in front of the progress bar.
 
     Raises:
-        MrtaError: if a method fails on a case, or the file has a row twice.
+        MrtaError: if a method fails on a case, or the file has a row twice or one of another case or method.
     """
     keys = [key for row in file.rows if (key := known(row)) is not None]
     done = set(keys)
     if len(done) < len(keys):
         twice = next(key for index, key in enumerate(keys) if key in keys[:index])
         raise ConfigError(f"{file.path} has two rows for method {twice[1]} on case {twice[0]}; expected one")
+    strange = done - {(case.name, method) for case in cases for method in solvers}
+    if strange:
+        case_name, method = min(strange)
+        raise ConfigError(
+            f"{file.path} has a row for method {method} on case {case_name}, which this command does not ask for; "
+            "expected its own rows alone"
+        )
     with progress_bar() as progress:
         bar = progress.add_task(what, total=len(cases) * len(solvers))
         for method, solver in solvers.items():

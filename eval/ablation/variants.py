@@ -17,7 +17,7 @@ ROBOTS = (1, 2, 4)
 PLUS_NETWORK = NetworkConfig(
     embedding=32, heads=4, moments=3, decoder="candidates", decision_layers=1, candidates=8, peers=4
 )
-"""Small, so that dozens of runs take half an hour."""
+"""Small, so that dozens of runs take an hour or so on two cores."""
 PAPER_NETWORK = replace(PLUS_NETWORK, decoder="attention")
 
 

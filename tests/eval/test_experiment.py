@@ -198,3 +198,11 @@ def test_garbage_that_csv_cannot_hold_is_refused(tmp_path: Path) -> None:
     (tmp_path / "rows.csv").write_text("x" * 200_000 + "\n")
     with pytest.raises(ConfigError, match="field larger than field limit"):
         RowsFile(tmp_path / "rows.csv", Row)
+
+
+def test_a_row_of_another_case_or_method_is_refused(tmp_path: Path) -> None:
+    file, solvers = RowsFile(tmp_path / "rows.csv", Row), {"nearest": make_solver("nearest")}
+    measure(CASES, solvers, file, row_of, lambda row: (row.case, row.method))
+    file.append(replace(file.rows[0], case="zz"))
+    with pytest.raises(ConfigError, match=r"rows\.csv has a row for method nearest on case zz, which this command does"):
+        measure(CASES, solvers, file, row_of, lambda row: (row.case, row.method))
