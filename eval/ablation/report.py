@@ -161,8 +161,8 @@ def _differences(study: Study, comparisons: list[Comparison]) -> Section:
     return Section(
         title="Differences from the reference",
         text=(
-            "So few runs of a variant say little about how much its runs scatter, so that only large differences can be "
-            "told: a difference that is not sure may well be there. More seeds (--seeds) narrow the intervals. "
+            "So few runs of a variant say little about how much its runs scatter, so that only large differences can "
+            "be told: a difference that is not sure may well be there. More seeds (--seeds) narrow the intervals. "
             "Resampling the seeds in a bootstrap would give narrower intervals, and wrong ones: of two runs it sees "
             "half of the variance.",
         ),

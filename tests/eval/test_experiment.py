@@ -204,5 +204,5 @@ def test_a_row_of_another_case_or_method_is_refused(tmp_path: Path) -> None:
     file, solvers = RowsFile(tmp_path / "rows.csv", Row), {"nearest": make_solver("nearest")}
     measure(CASES, solvers, file, row_of, lambda row: (row.case, row.method))
     file.append(replace(file.rows[0], case="zz"))
-    with pytest.raises(ConfigError, match=r"rows\.csv has a row for method nearest on case zz, which this command does"):
+    with pytest.raises(ConfigError, match=r"rows\.csv has a row for method nearest on case zz, which this"):
         measure(CASES, solvers, file, row_of, lambda row: (row.case, row.method))
