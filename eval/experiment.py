@@ -5,7 +5,9 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeVar
@@ -90,6 +92,16 @@ def open_experiment(folder: Path, manifest: Manifest) -> None:
             f"{folder} holds results of another run: {difference}; expected the same command on the same cases, or a "
             "new folder"
         )
+
+
+@contextmanager
+def resumable() -> Iterator[None]:
+    """For a command that keeps what it has measured: after Ctrl-C, say how to go on."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        print("the same command goes on where it stopped", file=sys.stderr)
+        raise
 
 
 def _lock(folder: Path) -> None:

@@ -7,6 +7,8 @@ bounds and an equally seeded generator give equal scenarios.
 from __future__ import annotations
 
 import dataclasses
+import reprlib
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal, Protocol, get_args
 
@@ -23,6 +25,18 @@ class ScenarioGenerator(Protocol):
     def __call__(self, rng: np.random.Generator, name: str = ...) -> Scenario:
         """Draw one scenario, using no other randomness than `rng`."""
         ...
+
+
+def draw_scenario(generator: Callable[[np.random.Generator], Scenario], rng: np.random.Generator) -> Scenario:
+    """One scenario from a generator, which may be a user's own.
+
+    Raises:
+        ConfigError: if it gives something else.
+    """
+    scenario = generator(rng)
+    if not isinstance(scenario, Scenario):
+        raise ConfigError(f"the generator drew {reprlib.repr(scenario)}; expected a mrta_zoo.Scenario")
+    return scenario
 
 
 def _draw_count(rng: np.random.Generator, bounds: tuple[int, int]) -> int:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+import reprlib
+from collections.abc import Callable, Mapping, Sequence
 from typing import Literal, get_args
 
 from mrta_zoo.errors import ConfigError
@@ -14,9 +16,9 @@ Reward = Callable[[Mission, Sequence[Finished]], Sequence[float]]
 """``reward(mission, finished) -> [a number for each robot]``.
 
 Called once at reset, with nothing finished, and once after every step, with what was finished in it, in order of
-time. Within an episode every finish is reported exactly once, and ``mission.done`` is seen exactly once. It must
-not change the mission, and has to be a module-level function (or a picklable object) if the environment is to be
-pickled.
+time; the numbers must be finite. Within an episode every finish is reported exactly once, and ``mission.done`` is
+seen exactly once. It must not change the mission, and has to be a module-level function (or a picklable object) if
+the environment is to be pickled.
 """
 
 
@@ -60,3 +62,25 @@ def make_reward(reward: RewardName | Reward) -> Reward:
             "a mission and the tasks just finished"
         )
     return REWARDS[reward]
+
+
+def as_rewards(given: object, robots: int) -> list[float]:
+    """What a reward gave, as a float for each robot.
+
+    Raises:
+        ConfigError: if it is anything but a finite number for each robot.
+    """
+    try:
+        if isinstance(given, (str, Mapping)):  # their letters and keys are no rewards
+            raise TypeError
+        rewards = [float(value) for value in given]  # type: ignore[attr-defined]
+    except (TypeError, ValueError, OverflowError):
+        raise ConfigError(
+            f"the reward function gave {reprlib.repr(given)}; expected a list of {robots} numbers, one for each robot"
+        ) from None
+    if len(rewards) != robots:
+        raise ConfigError(f"the reward function gave {len(rewards)} numbers; expected {robots}, one for each robot")
+    for robot, reward in enumerate(rewards):
+        if not math.isfinite(reward):
+            raise ConfigError(f"the reward function gave {reward} to robot {robot}; expected a finite number")
+    return rewards

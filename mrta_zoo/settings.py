@@ -11,7 +11,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.generators import GENERATORS, TaptcGenerator, make_generator
+from mrta_zoo.generators import GENERATORS, TaptcGenerator, draw_scenario, make_generator
 from mrta_zoo.rewards import Reward, RewardName, make_reward
 from mrta_zoo.rules import MaskRule, check_mask_rule
 from mrta_zoo.scenario import Scenario
@@ -102,10 +102,7 @@ class Settings:
                     f"make it with max_{what}={most} or more, or pass another generator"
                 )
         assert callable(self.generator)  # a name was replaced at construction
-        scenario = self.generator(rng)
-        if not isinstance(scenario, Scenario):
-            raise ConfigError(f"the generator drew {_short(scenario)}; expected a mrta_zoo.Scenario")
-        return self.check_fits(scenario)
+        return self.check_fits(draw_scenario(self.generator, rng))
 
     def check_fits(self, scenario: Scenario) -> Scenario:
         """The scenario, if there is room for it.

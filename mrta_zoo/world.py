@@ -16,6 +16,7 @@ from gymnasium import spaces
 from mrta_zoo.errors import ActionError, ConfigError
 from mrta_zoo.mission import Finished, Mission
 from mrta_zoo.observation import FloatTable, Observer, flat_space, observation_space, state_space
+from mrta_zoo.rewards import as_rewards
 from mrta_zoo.rules import MaskReason
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.settings import Settings
@@ -160,14 +161,7 @@ class World:
         Raises:
             ActionError: if it is none.
         """
-        last = int(self.action_spaces[agent].n) - 1
-        try:
-            number = operator.index(action)
-        except TypeError:
-            number = -1
-        if not 0 <= number <= last or isinstance(action, bool):
-            raise ActionError(f"{agent} sent action {action!r}; expected a whole number from 0 to {last}")
-        return number
+        return as_action(agent, action, int(self.action_spaces[agent].n))
 
     def _space(self, num_actions: int) -> spaces.Space[Any]:
         n, m = self.max_tasks, len(self.names)
@@ -185,12 +179,22 @@ class World:
     def _reward(self, finished: Sequence[Finished]) -> list[float]:
         reward = self.settings.reward
         assert callable(reward)  # a name was replaced at construction
-        rewards = [float(value) for value in reward(self.mission, finished)]
-        if len(rewards) != len(self.agents):
-            raise ConfigError(
-                f"the reward function gave {len(rewards)} numbers; expected {len(self.agents)}, one for each robot"
-            )
-        return rewards
+        return as_rewards(reward(self.mission, finished), len(self.agents))
+
+
+def as_action(agent: str, action: Any, num_actions: int) -> int:
+    """An action as a Python integer from 0 to ``num_actions - 1``.
+
+    Raises:
+        ActionError: if it is none.
+    """
+    try:
+        number = operator.index(action)
+    except TypeError:
+        number = -1
+    if not 0 <= number < num_actions or isinstance(action, bool):
+        raise ActionError(f"{agent} sent action {action!r}; expected a whole number from 0 to {num_actions - 1}")
+    return number
 
 
 def next_legal(mask: npt.NDArray[Any], action: int) -> int:

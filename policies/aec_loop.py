@@ -30,7 +30,8 @@ def run_in_environment(
         The tasks of each robot in the order in which it took them.
 
     Raises:
-        ActionError: if the policy chooses what it may not; the message names the robot, the task and the reason.
+        ActionError: if the policy chooses what it may not, or no whole number; the message names the robot, the
+            task and the reason.
         ConfigError: if there is no such mask rule.
     """
     # Without the wrappers: they end the mission at an illegal action, where an error is wanted here.
@@ -42,7 +43,7 @@ def run_in_environment(
         if termination or truncation:
             env.step(None)
             continue
-        task = int(policy.act(seen, agent))
+        task = policy.act(seen, agent)
         env.step(task)
-        routes[agent].append(task)
+        routes[agent].append(int(task))  # a NumPy integer, perhaps
     return Plan.of(list(routes.values()), scenario.name, method)

@@ -64,4 +64,4 @@ class ReplayPolicy:
                 f"the plan's route for robot {robot} is at its end, but the robot may still choose {int(mask.sum())} "
                 "tasks and cannot decline; give a policy as `then`"
             )
-        return int(self.then.act(observation, agent))
+        return self.then.act(observation, agent)

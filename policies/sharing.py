@@ -102,17 +102,24 @@ class IndependentNetworks(SeveralNetworks):
             ConfigError: if it has none.
         """
         if robot >= len(self.robots):
-            raise ConfigError(
-                f"robot {robot} has no network: these independent policies were trained for "
-                f"{len(self.robots)} robots; use a policy with sharing 'shared' or 'by-capacity' for more"
-            )
+            raise self._none_for(f"robot {robot} has")
         return self.networks[robot]
 
     def which(self, moments: Moments) -> Tensor:
         """(S, G) int64, the robot to act."""
         numbers = torch.arange(moments.working.shape[-1], device=moments.working.device)
-        self.of_robot(int((moments.working * numbers).max()))
+        first, last = len(self.robots), int((moments.working * numbers).max())
+        if last == first:
+            raise self._none_for(f"robot {first} has")
+        if last > first:
+            raise self._none_for(f"robots {first} {'and' if last == first + 1 else 'to'} {last} have")
         return moments.ego
+
+    def _none_for(self, who: str) -> ConfigError:
+        return ConfigError(
+            f"{who} no network: these independent policies were trained for {len(self.robots)} robots; "
+            "use a policy with sharing 'shared' or 'by-capacity' for more"
+        )
 
 
 class ByCapacityNetworks(SeveralNetworks):

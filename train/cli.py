@@ -87,7 +87,8 @@ def train_command(argv: Sequence[str]) -> None:
         if changed:
             raise ConfigError(
                 f"--resume keeps the run's configuration; {changed[0]} is {getattr(run.config, changed[0])} in "
-                f"{command.out}, not {getattr(command.config, changed[0])}"
+                f"{command.out}, not {getattr(command.config, changed[0])}; to train on otherwise, begin a new "
+                f"run from its weights: --initial {command.out}, another --out, and no --resume"
             )
     else:
         run, seconds = checkpoint.start(command.out, command.config, options), 0.0

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Callable
 
 from torch import Tensor
 
 from mrta_zoo.batch import ScenarioBatch
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.rollout import Rollout
 
 Objective = Callable[[Rollout, ScenarioBatch], Tensor]
-"""(B,) losses of a rollout of S scenarios, B = S · G; smaller is better."""
+"""(B,) floating-point losses of a rollout of S scenarios, B = S · G; smaller is better."""
 
 
 def cost_per_task(rollout: Rollout, scenarios: ScenarioBatch) -> Tensor:
@@ -24,6 +26,27 @@ def missed_share(rollout: Rollout, scenarios: ScenarioBatch) -> Tensor:
 
 
 OBJECTIVES: dict[str, Objective] = {"cost": cost_per_task, "completion": missed_share}
+
+
+def checked(objective: Objective) -> Objective:
+    """A user's objective, which raises `ConfigError` if it gives anything but (B,) floating-point losses."""
+
+    def losses(rollout: Rollout, scenarios: ScenarioBatch) -> Tensor:
+        given, missions = objective(rollout, scenarios), len(rollout.cost)
+        if not isinstance(given, Tensor) or not given.is_floating_point() or given.shape != (missions,):
+            raise ConfigError(
+                f"the objective gave {_described(given)}; expected a floating-point tensor of shape ({missions},), a "
+                "loss for each mission of the rollout"
+            )
+        return given
+
+    return losses
+
+
+def _described(given: object) -> str:
+    if isinstance(given, Tensor):
+        return f"a tensor of {given.dtype} and shape {tuple(given.shape)}"
+    return reprlib.repr(given)
 
 
 def _tasks(rollout: Rollout, scenarios: ScenarioBatch) -> Tensor:

@@ -18,7 +18,7 @@ import torch
 
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.generators import ScenarioGenerator
+from mrta_zoo.generators import ScenarioGenerator, draw_scenario
 from mrta_zoo.policies.capam.candidate_decoder import CandidateDecoder
 from mrta_zoo.policies.rollout import roll_out
 from mrta_zoo.policies.sharing import Network, build_network
@@ -30,7 +30,7 @@ from mrta_zoo.train.experts import ExpertPlan
 from mrta_zoo.train.gradients import accumulate_gradients
 from mrta_zoo.train.graphed_rollout import GraphedRollout
 from mrta_zoo.train.imitation import PlanBatch, follow, turned
-from mrta_zoo.train.objective import OBJECTIVES, Objective
+from mrta_zoo.train.objective import OBJECTIVES, Objective, checked
 from mrta_zoo.train.precision import autocast
 from mrta_zoo.train.scenarios import Feed
 
@@ -108,7 +108,7 @@ class Reinforce:
         self.config = config
         self.device = _device(config.device)
         self.generator = generator
-        self.objective = objective or OBJECTIVES[config.objective]
+        self.objective = OBJECTIVES[config.objective] if objective is None else checked(objective)
         if generator is None and config.sharing == "by-capacity" and config.generator != "taptc":
             raise ConfigError(
                 f"sharing is 'by-capacity', a network for each of a few kinds of robots, and generator "
@@ -283,7 +283,7 @@ class Reinforce:
 
     def _draw(self, rng: np.random.Generator) -> Scenario:
         generator = self.generator or training_generator(self.config, draw_size(self.config, rng))
-        return generator(rng)
+        return draw_scenario(generator, rng)
 
     def _learning_rate(self) -> float:
         config = self.config

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mrta_zoo.batch import ScenarioBatch
-from mrta_zoo.generators import ScenarioGenerator
+from mrta_zoo.generators import ScenarioGenerator, draw_scenario
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, team, training_generator
 
@@ -33,7 +33,9 @@ def draw(config: TrainConfig, generator: ScenarioGenerator | None, update: int) 
         generator, most_robots = training_generator(config, tasks), team(config, tasks)[1]
     else:
         most_robots = None
-    scenarios = ScenarioBatch.of([generator(rng) for _ in range(config.scenarios)], max_robots=most_robots)
+    scenarios = ScenarioBatch.of(
+        [draw_scenario(generator, rng) for _ in range(config.scenarios)], max_robots=most_robots
+    )
     return Drawn(scenarios, int(rng.integers(2**63)))
 
 

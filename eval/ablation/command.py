@@ -13,7 +13,7 @@ from mrta_zoo.eval.ablation.questions import QUESTIONS, needed
 from mrta_zoo.eval.ablation.report import make_report
 from mrta_zoo.eval.ablation.study import Study
 from mrta_zoo.eval.ablation.variants import ROBOTS, Budget, all_variants
-from mrta_zoo.eval.experiment import make_manifest
+from mrta_zoo.eval.experiment import make_manifest, resumable
 from mrta_zoo.eval.flags import names, parse
 from mrta_zoo.eval.reproduce.report import publish
 from mrta_zoo.eval.training.held_out import HeldOut
@@ -58,6 +58,7 @@ class Ablate:
     """Runs at a time, each a process with one CPU thread. Results do not depend on it."""
 
 
+@resumable()
 def ablate_command(argv: Sequence[str]) -> None:
     """Run `mrta-zoo ablate` with these arguments.
 

@@ -15,7 +15,7 @@ from mrta_zoo.errors import ConfigError, MissingExtraError
 from mrta_zoo.eval.case_choice import read_all, shown_cases
 from mrta_zoo.eval.console import results_console
 from mrta_zoo.eval.converge.curves import BudgetRow, curves_of, draw_curves
-from mrta_zoo.eval.experiment import make_manifest, measure, open_experiment
+from mrta_zoo.eval.experiment import make_manifest, measure, open_experiment, resumable
 from mrta_zoo.eval.figure_style import save_figure
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.machine import Session, this_session
@@ -62,6 +62,7 @@ class Converge:
     """CPU threads for trained methods, and searches at a time for eils and polishing."""
 
 
+@resumable()
 def converge_command(argv: Sequence[str]) -> None:
     """Run `mrta-zoo converge` with these arguments.
 

@@ -13,7 +13,7 @@ from mrta_zoo import __version__
 from mrta_zoo.errors import ConfigError, MissingExtraError
 from mrta_zoo.eval.case_choice import read_all, shown_cases
 from mrta_zoo.eval.console import preparing
-from mrta_zoo.eval.experiment import Manifest, make_manifest, measure, open_experiment
+from mrta_zoo.eval.experiment import Manifest, make_manifest, measure, open_experiment, resumable
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.machine import Session, this_session
 from mrta_zoo.eval.reproduce.all_pairs import compare_all
@@ -78,6 +78,7 @@ class Reproduce:
     """CPU threads for trained methods, and searches at a time for eils and polishing."""
 
 
+@resumable()
 def reproduce_command(argv: Sequence[str]) -> None:
     """Run `mrta-zoo reproduce` with these arguments.
 

@@ -9,7 +9,7 @@ from typing import Annotated
 
 from tyro.conf import arg
 
-from mrta_zoo.eval.experiment import make_manifest
+from mrta_zoo.eval.experiment import make_manifest, resumable
 from mrta_zoo.eval.flags import names, parse
 from mrta_zoo.eval.reproduce.report import publish
 from mrta_zoo.eval.sharing.arms import QUESTIONS, TRAINED_ROBOTS, UNSEEN_ROBOTS, Budget, needed
@@ -56,6 +56,7 @@ class Share:
     """Runs at a time, each a process with one CPU thread. Results do not depend on it."""
 
 
+@resumable()
 def sharing_command(argv: Sequence[str]) -> None:
     """Run `mrta-zoo sharing` with these arguments.
 

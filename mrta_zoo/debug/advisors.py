@@ -22,6 +22,7 @@ from mrta_zoo.policies.registry import LearnedSolver, PolicySolver, make_solver
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import Choice, tightest_rule
+from mrta_zoo.world import as_action
 
 LEAST, DIGITS = 1e-4, 6
 """Probabilities below are left out of a choice, the others rounded."""
@@ -108,16 +109,20 @@ class PolicyAdvisor(Advisor):
         return _fork(self._policy)
 
     def advise(self, mission: Mission, state: Policy) -> tuple[Choice, Policy]:
-        """What the policy would do now, given what it went through before."""
+        """What the policy would do now, given what it went through before.
+
+        Raises:
+            ActionError: if it gives no task's number.
+        """
         scenario, robot = mission.scenario, mission.actor
         if scenario not in self._observers:
             self._observers = {scenario: Observer(scenario, scenario.num_tasks, scenario.num_robots)}
         observation = self._observers[scenario].observe(mission, robot)
-        policy = _fork(state)
+        policy, agent = _fork(state), f"robot_{robot}"
         if not isinstance(policy, Probabilistic):
-            return Choice(int(policy.act(observation, f"robot_{robot}"))), policy
+            return Choice(as_action(agent, policy.act(observation, agent), scenario.num_tasks)), policy
         thought = policy.decide(observation)
-        return Choice(int(thought.action), _sparse(thought.probabilities)), policy
+        return Choice(as_action(agent, thought.action, scenario.num_tasks), _sparse(thought.probabilities)), policy
 
 
 class PlanAdvisor(Advisor):

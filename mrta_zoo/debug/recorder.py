@@ -39,6 +39,7 @@ def play(scenario: Scenario, advisor: Advisor, first: Sequence[Choice] = ()) -> 
 
     Raises:
         PlanError: if a robot may not choose what it should.
+        ActionError: if a policy gives no task's number.
     """
     mission = Mission(scenario, advisor.mask_rule)
     state = advisor.begin()

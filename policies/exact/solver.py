@@ -43,7 +43,7 @@ class ExactSolver:
     another one: a completed task costs nothing there, any other at least 1, so that completing one more usually
     pays. But a task that nobody takes costs the more the later the mission ends; so of the plans with as many
     tasks others may cost less, and at times one with fewer. What is planned is finished by its deadline, whatever
-    the mask rule.
+    the mask rule. Making the first one compiles the local search, some seconds on a machine new to it.
 
     Args:
         budget: seconds a scenario, > 0. Kept up to about a second, and the time of the local search.
@@ -60,12 +60,13 @@ class ExactSolver:
         if max_states < 0:
             raise ConfigError(f"max_states is {max_states}; expected a whole number >= 0")
         self._budget, self._max_states = budget, max_states
+        self._local_search = EilsSolver()  # compiles here, so that no budget is spent on it
 
     def solve(self, scenario: Scenario) -> Plan:
         """A plan for `scenario`, with its bound."""
         begun = time.perf_counter()
         bound = most_completable(scenario, BOUND_SHARE * self._budget)
-        best = EilsSolver().solve(scenario).routes
+        best = self._local_search.solve(scenario).routes
         completed = verify(scenario, Plan(best)).completed
         # The sets that are part of no other nearly always do. They may not where rounding lets a robot be in time for a
         # set but not for a part of it.

@@ -116,3 +116,29 @@ def test_own_reward_function():
     assert returns["robot_0"] == returns["robot_1"]
     with pytest.raises(ConfigError, match="gave 1 numbers; expected 2, one for each robot"):
         started(scenario=scenario, reward=lambda mission, finished: [0.0])
+
+
+@pytest.mark.parametrize("make", [mrta_v0.env, mrta_v0.parallel_env])
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        (1.5, "gave 1.5; expected a list of 3 numbers, one for each robot"),
+        (None, "gave None; expected a list of 3 numbers"),
+        (["a", 0, 0], r"gave \['a', 0, 0\]; expected a list of 3 numbers"),
+        ("123", "gave '123'; expected a list of 3 numbers"),
+        ({0: 1.0, 1: 1.0, 2: 1.0}, "gave {0: 1.0, 1: 1.0, 2: 1.0}; expected a list of 3 numbers"),
+        ([0.0, float("nan"), 0.0], "gave nan to robot 1; expected a finite number"),
+        (np.array([0.0, 0.0, -np.inf]), "gave -inf to robot 2; expected a finite number"),
+        ([10**400, 0, 0], "gave .*; expected a list of 3 numbers"),
+    ],
+)  # fmt: skip
+def test_a_reward_that_is_none_is_refused(make, given, message):
+    env = make(scenario=small_scenario(0), reward=lambda mission, finished: given)
+    with pytest.raises(ConfigError, match=f"the reward function {message}"):
+        env.reset()
+
+
+def test_rewards_may_be_numbers_of_numpy():
+    env = mrta_v0.env(scenario=small_scenario(0), reward=lambda mission, finished: np.array([1, 2, 3], np.float32))
+    env.reset()
+    assert env.rewards == {"robot_0": 1.0, "robot_1": 2.0, "robot_2": 3.0}

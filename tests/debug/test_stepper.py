@@ -264,3 +264,13 @@ def test_the_outlook_by_hand() -> None:
     assert [each.task for each in stepper.outlook(by="deadline")] == [0, 1]
     with pytest.raises(ConfigError, match="there is no order 'name'; expected one of rank, distance"):
         stepper.outlook(by="name")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("task", [None, 1.5, -1, 12])
+def test_a_policy_that_chooses_no_task_is_named(task: Any) -> None:
+    class Odd:
+        def act(self, observation: Observation, agent: str) -> int:
+            return task  # type: ignore[no-any-return]
+
+    with pytest.raises(ActionError, match=f"robot_0 sent action {task!r}; expected a whole number from 0 to 11"):
+        record(SCENARIO, Odd())

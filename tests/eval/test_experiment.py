@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from mrta_zoo.cli import main
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.case_choice import read_all, shown_cases
 from mrta_zoo.eval.converge.curves import BudgetRow
@@ -206,3 +207,24 @@ def test_a_row_of_another_case_or_method_is_refused(tmp_path: Path) -> None:
     file.append(replace(file.rows[0], case="zz"))
     with pytest.raises(ConfigError, match=r"rows\.csv has a row for method nearest on case zz, which this"):
         measure(CASES, solvers, file, row_of, lambda row: (row.case, row.method))
+
+
+@pytest.mark.parametrize(
+    ("command", "where"),
+    [
+        ("reproduce", "mrta_zoo.eval.reproduce.command"),
+        ("converge", "mrta_zoo.eval.converge.command"),
+        ("ablate", "mrta_zoo.eval.ablation.command"),
+        ("sharing", "mrta_zoo.eval.sharing.command"),
+    ],
+)
+def test_ctrl_c_says_how_to_go_on(
+    command: str, where: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(*args: object) -> object:
+        raise KeyboardInterrupt
+
+    module = pytest.importorskip(where)
+    monkeypatch.setattr(module, "parse", interrupted)
+    assert main([command, "--out", "x"]) == 130
+    assert capsys.readouterr().err == "the same command goes on where it stopped\ninterrupted\n"

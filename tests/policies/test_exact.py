@@ -229,3 +229,15 @@ def test_no_method_beats_the_optimum(name: str) -> None:
     for index, scenario in enumerate(compared_scenarios()):
         completed = verify(scenario, solver.solve(scenario)).completed
         assert completed <= verify(scenario, optimal(index)).completed
+
+
+def test_the_local_search_is_compiled_before_the_clock_starts(monkeypatch: pytest.MonkeyPatch) -> None:
+    from mrta_zoo.policies.local_search import eils
+
+    compiled: list[str] = []
+    monkeypatch.setattr(eils, "compile_once", lambda: compiled.append("now"))
+    solver = ExactSolver()
+    assert compiled
+    compiled.clear()
+    solver.solve(line([52, 40, 90], [70, 10, 60], [50]))
+    assert not compiled

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from real_cases import REAL, needs_real_cases
@@ -11,9 +13,11 @@ from mrta_zoo.errors import ActionError
 from mrta_zoo.io import read_cases
 from mrta_zoo.mission import Mission
 from mrta_zoo.observation import Observation, Observer
+from mrta_zoo.plan import Plan
 from mrta_zoo.policies.aec_loop import run_in_environment
 from mrta_zoo.policies.heuristics import EarliestDeadlinePolicy, NearestPolicy, RandomPolicy
 from mrta_zoo.policies.protocol import Policy
+from mrta_zoo.policies.replay import ReplayPolicy
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
 
@@ -94,6 +98,31 @@ def test_the_aec_loop_names_who_chose_what_it_may_not() -> None:
     scenario = scenario_of([(1, 0), (50, 0)], [40, 40], [(0, 0)])
     with pytest.raises(ActionError, match=r"robot_0 sent action 1: .*too late; its choices are 0"):
         run_in_environment(Stubborn(), scenario)
+
+
+@pytest.mark.parametrize("task", [None, 1.5, 0.0, -1, 2])
+def test_the_aec_loop_names_who_chose_no_task(task: Any) -> None:
+    class Odd:
+        def act(self, observation: Observation, agent: str) -> int:
+            return task  # type: ignore[no-any-return]
+
+    scenario = scenario_of([(1, 0), (50, 0)], [400, 400], [(0, 0)])
+    sentence = f"robot_0 sent action {task!r}; expected a whole number from 0 to 1"
+    with pytest.raises(ActionError, match=sentence):
+        run_in_environment(Odd(), scenario)
+    with pytest.raises(ActionError, match=sentence):
+        run_in_environment(ReplayPolicy(Plan.of([[]]), then=Odd()), scenario)
+
+
+@pytest.mark.parametrize("kind", [np.int64, np.array])
+def test_policies_may_choose_by_numbers_of_numpy(kind: Any) -> None:
+    class First:
+        def act(self, observation: Observation, agent: str) -> int:
+            return kind(observation["action_mask"].argmax())  # type: ignore[no-any-return]
+
+    plan = run_in_environment(First(), scenario_of([(1, 0), (50, 0)], [400, 400], [(0, 0)]))
+    assert plan.routes == ((0, 1),)
+    assert all(type(task) is int for task in plan.routes[0])
 
 
 def test_a_policy_has_the_form_of_observation_that_it_asks_for() -> None:

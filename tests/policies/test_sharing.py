@@ -121,7 +121,8 @@ def test_teams_of_other_sizes(robots: int) -> None:
     if robots <= 4:
         assert policy("independent").solve(scenario).routes
         return
-    sentence = rf"robot {robots - 1} has no network: these independent policies were trained for 4 robots"
+    who = {6: "robots 4 and 5 have", 9: "robots 4 to 8 have"}[robots]
+    sentence = f"{who} no network: these independent policies were trained for 4 robots"
     with pytest.raises(ConfigError, match=sentence):
         policy("independent").solve(scenario)
     with pytest.raises(ConfigError, match=sentence):

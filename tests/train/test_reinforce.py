@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 import torch
 from factories import hopeless_scenario
+from torch import Tensor
 
 from mrta_zoo import Scenario
 from mrta_zoo.batch import BatchMission, ScenarioBatch
@@ -139,6 +142,34 @@ def test_an_objective_of_your_own_is_what_is_minimised() -> None:
     first = run.step()
     assert 1 <= first.loss <= 10
     assert first.loss == pytest.approx(10 * (1 - Reinforce(TINY).step().loss))  # the same missions, seen otherwise
+
+
+@pytest.mark.parametrize(
+    ("given", "described"),
+    [
+        (lambda cost: None, "None"),
+        (lambda cost: 0.5, "0.5"),
+        (lambda cost: cost.numpy(), "array"),
+        (lambda cost: cost.mean(), r"a tensor of torch.float\d\d and shape \(\)"),
+        (lambda cost: cost[:, None], r"a tensor of torch.float\d\d and shape \(\d+, 1\)"),
+        (lambda cost: cost.long(), r"a tensor of torch.int64 and shape \(\d+,\)"),
+    ],
+)
+def test_an_objective_that_gives_no_losses_is_refused(given: Callable[[Tensor], Any], described: str) -> None:
+    missions = TINY.scenarios * TINY.samples
+    run = Reinforce(TINY, objective=lambda rollout, scenarios: given(rollout.cost))
+    sentence = rf"the objective gave {described}.*; expected a floating-point tensor of shape \({missions},\)"
+    with pytest.raises(ConfigError, match=sentence):
+        run.step()
+    with pytest.raises(ConfigError, match=f"the objective gave {described}"):
+        list(run.run())
+
+
+def test_a_generator_that_draws_no_scenario_is_refused() -> None:
+    run = Reinforce(TINY, generator=lambda rng, name="": rng.random())  # type: ignore[arg-type, return-value]
+    for use in (run.step, run.validate):
+        with pytest.raises(ConfigError, match=r"the generator drew 0\.\d+; expected a mrta_zoo.Scenario"):
+            use()
 
 
 class Detour:
