@@ -118,7 +118,7 @@ def test_the_same_weights_serve_any_number_of_tasks_and_robots(config: NetworkCo
 def test_the_environment_and_the_batch_take_the_same_decisions(
     config: NetworkConfig, sharing: str, rule: MaskRule
 ) -> None:
-    network, scenarios = network_of(config, sharing), draw(3, seed=8)
+    network, scenarios = network_of(config, sharing), draw(4, seed=8)
     rollout = roll_out(network, ScenarioBatch.of(scenarios), mask_rule=rule, keep_plans=True)
     policy = NeuralPolicy(network, PolicyInfo(network=config, mask_rule=rule))
     env = mrta_v0.raw_env(max_tasks=25, max_robots=5, mask_rule=rule)
