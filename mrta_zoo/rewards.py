@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import reprlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from typing import Literal, get_args
 
 from mrta_zoo.errors import ConfigError
@@ -71,16 +71,16 @@ def as_rewards(given: object, robots: int) -> list[float]:
         ConfigError: if it is anything but a finite number for each robot.
     """
     try:
-        if isinstance(given, (str, Mapping)):  # their letters and keys are no rewards
+        if isinstance(given, (str, dict)):  # their letters and keys are no rewards
             raise TypeError
-        rewards = [float(value) for value in given]  # type: ignore[attr-defined]
+        rewards = list(map(float, given))  # type: ignore[call-overload]
     except (TypeError, ValueError, OverflowError):
         raise ConfigError(
             f"the reward function gave {reprlib.repr(given)}; expected a list of {robots} numbers, one for each robot"
         ) from None
     if len(rewards) != robots:
         raise ConfigError(f"the reward function gave {len(rewards)} numbers; expected {robots}, one for each robot")
-    for robot, reward in enumerate(rewards):
-        if not math.isfinite(reward):
-            raise ConfigError(f"the reward function gave {reward} to robot {robot}; expected a finite number")
+    if not all(map(math.isfinite, rewards)):
+        robot = list(map(math.isfinite, rewards)).index(False)
+        raise ConfigError(f"the reward function gave {rewards[robot]} to robot {robot}; expected a finite number")
     return rewards

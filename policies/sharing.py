@@ -110,7 +110,7 @@ class IndependentNetworks(SeveralNetworks):
         numbers = torch.arange(moments.working.shape[-1], device=moments.working.device)
         first, last = len(self.robots), int((moments.working * numbers).max())
         if last == first:
-            raise self._none_for(f"robot {first} has")
+            self.of_robot(first)
         if last > first:
             raise self._none_for(f"robots {first} {'and' if last == first + 1 else 'to'} {last} have")
         return moments.ego

@@ -153,7 +153,7 @@ def load_state(network: Network, tensors: dict[str, torch.Tensor], path: Path) -
                 f"the architecture needs {tuple(tensor.shape)}"
             )
         if tensors[name].dtype not in FLOATS:
-            raise ConfigError(f"{path}: tensor {name!r} holds {tensors[name].dtype}; expected float16, 32 or 64")
+            raise ConfigError(f"{path}: tensor {name!r} holds {tensors[name].dtype}; expected floating-point numbers")
         if not torch.isfinite(tensors[name]).all():
             raise ConfigError(f"{path}: tensor {name!r} holds numbers that are not finite")
     for name in tensors:

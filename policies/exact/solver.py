@@ -43,7 +43,7 @@ class ExactSolver:
     another one: a completed task costs nothing there, any other at least 1, so that completing one more usually
     pays. But a task that nobody takes costs the more the later the mission ends; so of the plans with as many
     tasks others may cost less, and at times one with fewer. What is planned is finished by its deadline, whatever
-    the mask rule. Making the first one compiles the local search, some seconds on a machine new to it.
+    the mask rule. Making the first one compiles the local search, some 20 seconds on a machine new to it.
 
     Args:
         budget: seconds a scenario, > 0. Kept up to about a second, and the time of the local search.

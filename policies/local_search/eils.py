@@ -71,7 +71,7 @@ class EilsConfig:
 
 
 class EilsSolver:
-    """Plans by EILS-style search. Making the first one compiles the search, some seconds on a machine new to it.
+    """Plans by EILS-style search. Making the first one compiles the search, some 20 seconds on a machine new to it.
 
     Args:
         seed: of the perturbations, >= 0.

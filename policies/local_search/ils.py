@@ -31,7 +31,7 @@ START, COUNT, IDLE = range(3)
 
 
 class IlsSolver:
-    """Plans by iterated local search. Making the first one compiles it, some seconds on a machine new to it.
+    """Plans by iterated local search. Making the first one compiles it, some 20 seconds on a machine new to it.
 
     Args:
         budget: seconds a scenario, > 0; by default the search ends after `ROUNDS_WITHOUT_IMPROVEMENT`, and the plan
