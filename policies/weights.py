@@ -150,7 +150,8 @@ def load_state(network: Network, tensors: dict[str, torch.Tensor], path: Path) -
         if tensors[name].shape != tensor.shape:
             raise ConfigError(
                 f"{path}: tensor {name!r} has shape {tuple(tensors[name].shape)}; "
-                f"the architecture needs {tuple(tensor.shape)}"
+                f"the architecture needs {tuple(tensor.shape)}; a policy that an earlier version saved may have to be "
+                "trained anew"
             )
         if tensors[name].dtype not in FLOATS:
             raise ConfigError(f"{path}: tensor {name!r} holds {tensors[name].dtype}; expected floating-point numbers")

@@ -64,7 +64,7 @@ def train(
     if run.update < config.imitation_updates:
         if plans is None:
             raise ConfigError("there is imitation to be done; name a folder of plans (--plans)")
-        known = read_plans(config, plans, config.imitation_plans)
+        known = read_plans(config, plans, config.imitation_plans, workers)
         if len(known) < config.imitation_plans:
             print(f"{out.name}: {plans} holds {len(known):,} plans, not {config.imitation_plans:,}", flush=True)
             run.config = config = replace(config, imitation_plans=len(known))

@@ -99,7 +99,8 @@ def train_command(argv: Sequence[str]) -> None:
             return
         train(run, command.out, seconds)
     except KeyboardInterrupt:
-        print(f"go on with: mrta-zoo train --out {command.out} --resume", file=sys.stderr)
+        prepare = " --prepare" if command.prepare else ""
+        print(f"go on with: mrta-zoo train --out {command.out} --resume{prepare}", file=sys.stderr)
         raise
 
 

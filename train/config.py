@@ -16,6 +16,8 @@ from mrta_zoo.train.precision import Precision
 BaselineName = Literal["samples", "rollout", "exponential"]
 ObjectiveName = Literal["cost", "completion"]
 GeneratorName = Literal["taptc", "uniform", "mixture"]
+MOST_DECISIONS = 10_000
+"""Far more than a plan has."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,8 +41,10 @@ class TrainConfig:
         mask_rule: what a robot may choose.
         imitation_updates: gradient steps that imitate plans of a strong search (`mrta_zoo.train.experts`) before
             REINFORCE takes over; 0 for none.
-        imitation_plans: number of plans to imitate.
+        imitation_plans: number of plans to imitate; they are made and kept in files of 500.
         imitation_batch: plans a step.
+        imitation_decisions: decisions of each of them, at most 10,000, drawn at random from a pool of up to 8,192 plans
+            that is made anew now and then (`mrta_zoo.train.imitator`), quicker on a GPU; 0 for all, and no pool.
         imitation_learning_rate: Adam's step size at the start of the imitation; falls to a tenth along a cosine.
         objective: what to minimise: "cost" (Eq. 1 of the paper, divided by the number of tasks), or one minus the
             completion rate ("completion").
@@ -55,7 +59,8 @@ class TrainConfig:
         final_learning_rate: Adam's step size at the end, reached along a cosine.
         clip_norm: gradients are scaled down to at most this norm.
         normalise: whether advantages are divided by their standard deviation over the batch.
-        entropy: weight of an entropy bonus, per decision.
+        entropy: weight of an entropy bonus, per decision, at the start; falls to nothing along the same cosine. Without
+            it the policy is soon all but certain of what it does, and tries nothing else.
         epoch: updates between two validations, each with a checkpoint, and with the baseline's t-test.
         validation_scenarios: number of validation scenarios, drawn once from the training distribution.
         significance: level of the baseline's t-test.
@@ -80,6 +85,7 @@ class TrainConfig:
     imitation_updates: int = 0
     imitation_plans: int = 0
     imitation_batch: int = 64
+    imitation_decisions: int = 0
     imitation_learning_rate: float = 1e-3
     objective: ObjectiveName = "completion"
     baseline: BaselineName = "samples"
@@ -127,9 +133,11 @@ class TrainConfig:
             raise ConfigError(
                 f"task_weights is {weights}; expected {len(self.tasks)} numbers > 0, one for each of tasks"
             )
-        for name in ("imitation_plans", "imitation_updates"):
+        for name in ("imitation_plans", "imitation_updates", "imitation_decisions"):
             if getattr(self, name) < 0:
                 raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 0")
+        if self.imitation_decisions > MOST_DECISIONS:
+            raise ConfigError(f"imitation_decisions is {self.imitation_decisions}; expected at most {MOST_DECISIONS:,}")
         if self.imitation_updates and self.imitation_plans < self.imitation_batch:
             raise ConfigError(
                 f"imitation_plans is {self.imitation_plans}; expected at least imitation_batch, {self.imitation_batch}"

@@ -11,6 +11,7 @@ import zipfile
 import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,7 @@ import numpy.typing as npt
 from mrta_zoo.errors import ConfigError, PlanError
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.train.child_process import pool_of
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, training_generator
 from mrta_zoo.verify import verify
@@ -87,28 +89,50 @@ def make_shard(config: TrainConfig, first: int, folder: Path) -> Path:
     return path
 
 
-def read_plans(config: TrainConfig, folder: Path, most: int) -> list[ExpertPlan]:
+def read_plans(config: TrainConfig, folder: Path, most: int, workers: int = 0) -> list[ExpertPlan]:
     """The first plans in a folder, with their scenarios.
+
+    Args:
+        config: the run.
+        folder: where the files are.
+        most: how many plans to read.
+        workers: processes that read; 0 to read here.
 
     Raises:
         ConfigError: if a file is damaged, or does not belong to the configuration: the first plan of each file must
             finish all its tasks in time, which plans of other scenarios do not.
     """
     plans: list[ExpertPlan] = []
-    for path in sorted(folder.glob("*.npz")):
-        try:
-            with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
-                index, robots, lengths, tasks = (file[name] for name in ("index", "robots", "lengths", "tasks"))
-            numbered = list(zip(index.tolist(), _split(robots, lengths, tasks), strict=True))
-        except UNREADABLE as error:
-            raise ConfigError(f"{path}: not a readable file of plans ({type(error).__name__})") from None
-        for number, routes in numbered:
-            if len(plans) == most:
-                return plans
-            scenario = expert_scenario(config, number)
-            if not _fits(scenario, routes, in_full=number == numbered[0][0]):
-                raise ConfigError(f"{path}: plan {number} does not fit its scenario; was it made with another seed?")
-            plans.append(ExpertPlan(scenario, routes))
+    paths = sorted(folder.glob("*.npz"))
+    read = partial(_read_shard, config)
+    if workers:
+        with pool_of(workers) as pool:
+            for shard in pool.map(read, paths):
+                plans += shard
+                if len(plans) >= most:
+                    pool.shutdown(wait=False, cancel_futures=True)
+                    break
+        return plans[:most]
+    for path in paths:
+        if len(plans) >= most:
+            break
+        plans += read(path)
+    return plans[:most]
+
+
+def _read_shard(config: TrainConfig, path: Path) -> list[ExpertPlan]:
+    try:
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
+            index, robots, lengths, tasks = (file[name] for name in ("index", "robots", "lengths", "tasks"))
+        numbered = list(zip(index.tolist(), _split(robots, lengths, tasks), strict=True))
+    except UNREADABLE as error:
+        raise ConfigError(f"{path}: not a readable file of plans ({type(error).__name__})") from None
+    plans = []
+    for number, routes in numbered:
+        scenario = expert_scenario(config, number)
+        if not _fits(scenario, routes, in_full=number == numbered[0][0]):
+            raise ConfigError(f"{path}: plan {number} does not fit its scenario; was it made with another seed?")
+        plans.append(ExpertPlan(scenario, routes))
     return plans
 
 

@@ -15,20 +15,21 @@ from mrta_zoo.policies.sharing import Network
 from mrta_zoo.train.experts import ExpertPlan
 
 
-def turned(scenarios: ScenarioBatch, symmetry: int) -> ScenarioBatch:
-    """The scenarios seen in one of the map's eight symmetries; only four of them where maps are not square.
+def turned(scenarios: ScenarioBatch, symmetry: Tensor) -> ScenarioBatch:
+    """The scenarios, each seen in one of the map's eight symmetries; only four of them where its map is not square.
 
     Args:
         scenarios: S scenarios.
-        symmetry: 0 to 7; bit 0 flips x, bit 1 flips y, bit 2 swaps the axes.
+        symmetry: (S,) int64 in 0 to 7; bit 0 flips x, bit 1 flips y, bit 2 swaps the axes.
     """
     sides = scenarios.map_size[:, None]
+    flip = torch.stack(((symmetry & 1).bool(), (symmetry & 2).bool()), -1)[:, None]
+    square = sides[..., 0] == sides[..., 1]
+    swap = (square & (symmetry & 4).bool()[:, None])[..., None]
 
     def turn(places: Tensor) -> Tensor:
-        flip = torch.tensor([bool(symmetry & 1), bool(symmetry & 2)], device=places.device)
         places = torch.where(flip, sides - places, places)
-        square = (sides[..., 0] == sides[..., 1])[..., None]
-        return torch.where(square & bool(symmetry & 4), places.flip(-1), places)
+        return torch.where(swap, places.flip(-1), places)
 
     return replace(scenarios, task_xy=turn(scenarios.task_xy), robot_xy=turn(scenarios.robot_xy))
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import multiprocessing
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from pathlib import Path
 
 from rich.console import Console
@@ -11,6 +10,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.extras import require
+from mrta_zoo.train.child_process import pool_of
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.experts import SHARD, ExpertPlan, make_shard, read_plans, shard_path
 
@@ -25,10 +25,11 @@ def make_plans(config: TrainConfig, folder: Path, workers: int = 1, console: Con
         console: where to show progress; standard error by default.
 
     Raises:
-        ConfigError: if a file is damaged or belongs to another run, or none can be written.
+        ConfigError: if a file is damaged or belongs to another run, none can be written, or a process dies.
         MissingExtraError: if plans are to be made and the extra "solvers" is missing.
     """
-    have = read_plans(config, folder, config.imitation_plans)
+    readers = workers if workers > 1 else 0
+    have = read_plans(config, folder, config.imitation_plans, readers)
     if len(have) >= config.imitation_plans:
         return have
     require("solvers", "making plans to imitate")
@@ -47,13 +48,11 @@ def make_plans(config: TrainConfig, folder: Path, workers: int = 1, console: Con
     console.print(f"{folder}: makes {missing * SHARD:,} plans to imitate", highlight=False, soft_wrap=True)
     with (
         Progress(*columns, console=console, disable=not console.is_terminal) as progress,
-        ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool,
+        pool_of(workers) as pool,
     ):
         bar = progress.add_task("", total=missing * SHARD)
-        try:
-            for _ in as_completed([pool.submit(make_shard, config, first, folder) for first in todo]):
-                progress.advance(bar, SHARD)
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
-    return read_plans(config, folder, config.imitation_plans)
+        # An interrupt need not wait for the files under way: they are there as a whole or not at all.
+        for made in as_completed([pool.submit(make_shard, config, first, folder) for first in todo]):
+            made.result()
+            progress.advance(bar, SHARD)
+    return read_plans(config, folder, config.imitation_plans, readers)

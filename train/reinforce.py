@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -29,7 +28,7 @@ from mrta_zoo.train.distribution import draw_size, most_robots, training_generat
 from mrta_zoo.train.experts import ExpertPlan
 from mrta_zoo.train.gradients import accumulate_gradients
 from mrta_zoo.train.graphed_rollout import GraphedRollout
-from mrta_zoo.train.imitation import PlanBatch, follow, turned
+from mrta_zoo.train.imitator import Imitator
 from mrta_zoo.train.objective import OBJECTIVES, Objective, checked
 from mrta_zoo.train.precision import autocast
 from mrta_zoo.train.scenarios import Feed
@@ -138,7 +137,7 @@ class Reinforce:
             if graphs
             else None
         )
-        self._plans: dict[int, PlanBatch] = {}
+        self._imitator = Imitator(config, self.network, self.device, self._graphed)
 
     @property
     def validation_batch(self) -> ScenarioBatch:
@@ -168,16 +167,17 @@ class Reinforce:
         """
         if self.update == self.config.imitation_updates:
             self.optimizer.state.clear()  # gradients of REINFORCE are of another size
+            self._imitator.release()
         rate = self._learning_rate()
         for group in self.optimizer.param_groups:
             group["lr"] = rate
         self.optimizer.zero_grad(set_to_none=True)
-        loss, decisions = self._imitate() if self.imitates else self._reinforce()
+        loss, decisions = self._imitator.accumulate(self.update) if self.imitates else self._reinforce()
         norm = torch.nn.utils.clip_grad_norm_(self.network.parameters(), self.config.clip_norm)
         if not torch.isfinite(norm):
             raise ConfigError(
                 f"training diverged in update {self.update + 1}: the gradient is not finite; go on from an earlier "
-                "checkpoint with a smaller learning_rate"
+                "checkpoint with a smaller learning_rate or entropy"
             )
         self.optimizer.step()
         self.update += 1
@@ -204,23 +204,9 @@ class Reinforce:
         advantage = self.baseline.advantage(scenarios, loss).float()
         if config.normalise:
             advantage = advantage / (advantage.std() + 1e-6)
-        accumulate_gradients(self.network, scenarios, rollout.segments, advantage, config.entropy, config.precision)
+        entropy = config.entropy * self._cosine()
+        accumulate_gradients(self.network, scenarios, rollout.segments, advantage, entropy, config.precision)
         return float(loss.mean()), sum(int(segment.live.sum()) for segment in rollout.segments)
-
-    def _imitate(self) -> tuple[float, int]:
-        """Gradients of the mean log-probability of the decisions behind some plans; its negative, and their number."""
-        config = self.config
-        if not self._plans:
-            raise ConfigError("there are no plans to imitate; give them (set_plans), or set imitation_updates to 0")
-        rng = np.random.default_rng((config.seed, 0, self.update))
-        plans = self._plans[draw_size(config, rng)]
-        rows = torch.from_numpy(rng.integers(len(plans), size=config.imitation_batch)).to(self.device)
-        scenarios = turned(plans.scenarios.select(rows), int(rng.integers(8)))
-        following = self._graphed.follow if self._graphed else partial(follow, self.network)
-        segments = following(scenarios, plans.routes[rows])
-        decisions = sum(int(segment.live.sum()) for segment in segments)
-        wanted = torch.full((len(rows), 1), -len(rows) / max(1, decisions), device=self.device)
-        return accumulate_gradients(self.network, scenarios, segments, wanted, precision=config.precision), decisions
 
     def validate(self) -> Validation:
         """Greedy results now; gives the baseline its chance to change, and adds to the history."""
@@ -271,11 +257,7 @@ class Reinforce:
         Raises:
             ConfigError: if there are none of some size.
         """
-        for size in self.config.tasks:
-            of_size = [plan for plan in plans if plan.scenario.num_tasks == size]
-            if not of_size:
-                raise ConfigError(f"there are no plans with {size} tasks to imitate; make more of them")
-            self._plans[size] = PlanBatch(of_size, self.device)
+        self._imitator.set_plans(plans)
 
     def close(self) -> None:
         """End the processes that draw scenarios."""
@@ -286,16 +268,21 @@ class Reinforce:
         return draw_scenario(generator, rng)
 
     def _learning_rate(self) -> float:
-        config = self.config
-        if self.update < config.imitation_updates:
+        config, done = self.config, self.update
+        if self.imitates:
             first, last = config.imitation_learning_rate, config.imitation_learning_rate / 10
-            done, progress = self.update, self.update / config.imitation_updates
         else:
-            first, last = config.learning_rate, config.final_learning_rate
-            done = self.update - config.imitation_updates
-            progress = done / config.updates
-        first *= min(1.0, (done + 1) / WARM_UP)
-        return last + (first - last) * (1 + math.cos(math.pi * progress)) / 2
+            first, last, done = config.learning_rate, config.final_learning_rate, done - config.imitation_updates
+        return last + (first * min(1.0, (done + 1) / WARM_UP) - last) * self._cosine()
+
+    def _cosine(self) -> float:
+        """From 1 at the beginning of imitation, and again of REINFORCE, to 0 at its end."""
+        config = self.config
+        if self.imitates:
+            progress = self.update / config.imitation_updates
+        else:
+            progress = (self.update - config.imitation_updates) / config.updates
+        return (1 + math.cos(math.pi * progress)) / 2
 
 
 def _device(name: str) -> torch.device:

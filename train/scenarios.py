@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import multiprocessing
 from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 
 import numpy as np
 
 from mrta_zoo.batch import ScenarioBatch
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import ScenarioGenerator, draw_scenario
+from mrta_zoo.train.child_process import DIED, obey_parent
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, team, training_generator
 
@@ -54,16 +57,23 @@ class Feed:
         self._ahead: dict[int, Future[Drawn]] = {}
 
     def take(self, update: int) -> Drawn:
-        """What belongs to an update."""
+        """What belongs to an update.
+
+        Raises:
+            ConfigError: if one of the processes dies.
+        """
         if not self._workers:
             return draw(self._config, self._generator, update)
         if self._pool is None:
-            self._pool = ProcessPoolExecutor(self._workers, multiprocessing.get_context("spawn"))
+            self._pool = ProcessPoolExecutor(self._workers, multiprocessing.get_context("spawn"), obey_parent)
         last = min(update + AHEAD * self._workers, self._config.total_updates)
         for number in range(update, max(last, update + 1)):  # the run may have been made longer since
             if number not in self._ahead:
                 self._ahead[number] = self._pool.submit(draw, self._config, self._generator, number)
-        return self._ahead.pop(update).result()
+        try:
+            return self._ahead.pop(update).result()
+        except BrokenProcessPool:
+            raise ConfigError(DIED) from None
 
     def close(self) -> None:
         """End the processes."""

@@ -60,7 +60,7 @@ def optimality_section(study: Study) -> Section:
         caption=f"Gap: tasks that the best plan completes and the method does not, in % of those the best plan "
         f"completes; mean with its {wording.INTERVAL} in brackets (BCa bootstrap over scenarios); how often the method "
         f"was optimal, and by how many tasks it was off at most. n = {len(proved)} scenarios. Trained methods have "
-        "learned on 100 tasks, so these are far from what they know.",
+        "learned on 50 tasks and more, so these are far from what they know.",
         shown=pd.DataFrame(shown),
         data=pd.DataFrame(data),
     )

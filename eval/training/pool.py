@@ -3,12 +3,8 @@
 from __future__ import annotations
 
 import multiprocessing
-import multiprocessing.connection
-import os
 import queue
-import signal
 import sys
-import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from typing import Any
@@ -18,6 +14,7 @@ from rich.console import Console
 
 from mrta_zoo.eval.console import progress_bar
 from mrta_zoo.eval.training.job import Job, perform
+from mrta_zoo.train.child_process import obey_parent
 
 Report = Callable[[Job, float], None]
 """Is told which share of a job is done; 1 only once its rows are there."""
@@ -100,19 +97,7 @@ def _prepare(told: Any, stop: Any) -> None:
     global _told, _stop
     _told, _stop = told, stop
     torch.set_num_threads(1)
-    # Ctrl-C is for the parent alone; and Linux, which shares cores out by session, gives each run its own share.
-    if hasattr(os, "setsid"):
-        os.setsid()
-    else:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _end_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-    multiprocessing.connection.wait([parent.sentinel])
-    os._exit(1)
+    obey_parent()
 
 
 def _perform(index: int, job: Job) -> None:

@@ -13,10 +13,11 @@ from torch import Tensor
 
 from mrta_zoo.policies.capam.inputs import USUAL_CROSSINGS, Moments, Tasks
 from mrta_zoo.policies.capam.neighbourhood import Neighbourhood, kind
+from mrta_zoo.policies.capam.prospects import PROSPECT_COLUMNS, prospects
 
 TASK_COLUMNS = (
     "dx", "dy", "x", "y", "travel", "work", "slack", "tightness", "left", "head_start", "second_head_start", "rivals",
-    "next_gap", "second_gap", "next_count", "rank",
+    "next_gap", "second_gap", "next_count", "rank", *PROSPECT_COLUMNS,
 )  # fmt: skip
 ROBOT_COLUMNS = ("dx", "dy", "x", "y", "wait", "capacity", "speed", "is_ego")
 MISSION_COLUMNS = ("elapsed", "horizon", "work_unit", "free_share", "free_a_robot", "time_left")
@@ -40,7 +41,8 @@ class Candidates:
             the share of the peers that could do it in time (rivals);
             time from it to the nearest and the second of its neighbours that could still be done after it (next_gap,
             second_gap), and the share of its neighbours that could (next_count);
-            its place among the candidates, by travel and work, as a share of K (rank).
+            its place among the candidates, by travel and work, as a share of K (rank);
+            how much there is to do around it (`mrta_zoo.policies.capam.prospects`).
         robot: (S, G, R, len(ROBOT_COLUMNS)) likewise; wait is the time until it is free.
         robot_valid: (S, G, R) bool.
         mission: (S, G, len(MISSION_COLUMNS)) elapsed time, the scales, what may be chosen as a share of the tasks and
@@ -107,6 +109,15 @@ class Candidates:
         neighbours = torch.isfinite(near.distance).sum(-1)
         count = possible.sum(-1) / of_task(neighbours).clamp(min=1)
 
+        others = moments.mask[..., None, :].expand(*index.shape, -1).scatter(3, index[..., None], False)
+        outlook = prospects(
+            travel=_distance(xy[..., None, :], tasks.xy[:, None, None]) * ego_pace[..., None],
+            work=tasks.workload[:, None] * ego_rate,
+            start=busy,
+            left=tasks.deadline[:, None] * horizon - elapsed,
+            others=others,
+            rival=robots.first_peer(tasks.xy),
+        )
         rank = torch.arange(index.shape[-1], device=index.device) / most_tasks
         task = torch.stack(
             (
@@ -115,6 +126,7 @@ class Candidates:
                 (slack / 2).clamp(-FAR, FAR), 1 / (1 + 10 * slack.clamp(min=0)), (left / 4).clamp(-FAR, FAR),
                 (first - travel).clamp(-FAR, FAR), (second - travel).clamp(-FAR, FAR), rivals,
                 gap.clamp(max=FAR), second_gap.clamp(max=FAR), count, rank.expand_as(travel),
+                *outlook.unbind(-1),
             ),
             -1,
         )  # fmt: skip
@@ -147,7 +159,7 @@ class Candidates:
         )
 
     def pairs(self) -> Tensor:
-        """(S, G, R + K, K, PAIR_COLUMNS): how each task would follow where a robot, or a task, ends.
+        """(S, G, PAIR_COLUMNS, R + K, K): how each task would follow where a robot, or a task, ends.
 
         The time that it would take (in three scales), the time to spare, and whether there is any.
         """
@@ -160,7 +172,7 @@ class Candidates:
                 time.clamp(max=2 * FAR), torch.exp(-10 * time), torch.exp(-3 * time),
                 spare.clamp(-FAR, FAR), (spare >= 0).to(time.dtype),
             ),
-            -1,
+            2,
         )  # fmt: skip
 
     @classmethod
@@ -212,6 +224,14 @@ class _Robots:
             valid=valid,
             working=peers.sum(-1, keepdim=True),
         )
+
+    def first_peer(self, places: Tensor) -> Tensor:
+        """(S, G, N) from now until the first of these peers could be at each of (S, N, 2) places; infinite without."""
+        if self.wait.shape[-1] == 1:
+            return torch.full((*self.wait.shape[:2], places.shape[1]), torch.inf, device=places.device)
+        way = _distance(self.xy[..., 1:, None, :], places[:, None, None]) * self.pace[..., 1:, None]
+        arrival = self.wait[..., 1:, None] + way
+        return arrival.masked_fill(~self.valid[..., 1:, None], torch.inf).amin(-2)
 
     def columns(self, ego_xy: Tensor) -> Tensor:
         is_ego = torch.zeros_like(self.wait)

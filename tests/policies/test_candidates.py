@@ -16,6 +16,7 @@ from mrta_zoo.policies.capam.candidates import MISSION_COLUMNS, ROBOT_COLUMNS, T
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
 from mrta_zoo.policies.capam.neighbourhood import Neighbourhood
+from mrta_zoo.policies.capam.prospects import PROSPECT_COLUMNS
 from mrta_zoo.policies.rollout import roll_out
 from mrta_zoo.policies.sharing import Network, build_network
 
@@ -48,6 +49,11 @@ def candidates(mission: BatchMission, most_tasks: int = 4, most_peers: int = 1) 
 
 def column(found: Candidates, name: str) -> list[float]:
     return found.task[0, 0, :3, TASK_COLUMNS.index(name)].tolist()
+
+
+def log_third(slope: float, *durations: float) -> float:
+    """What `prospects` makes of tasks that take so long each."""
+    return float(np.log1p(sum(np.exp(-slope * duration) for duration in durations)) / 3)
 
 
 def network_of(config: NetworkConfig, seed: int = 3) -> Network:
@@ -94,6 +100,12 @@ def test_what_is_known_of_the_first_decision() -> None:
         "second_gap": [1.0, 1.0, 1.0],  # 2 · 0.762 saturates
         "next_count": [2 / 3, 1 / 3, 0],
         "rank": [0, 1 / 4, 2 / 4],
+        # What may follow takes 2 · 0.424 + 0.2 and 2 · 0.762 after task 1, 0.8 after task 0; each counts e^(−10 times
+        # that), or e^(−10/3 times). Robot 1 is at task 0 and 0.4 from task 2, always the first.
+        "near": [log_third(10, 2 * FROM_1_TO_0 + 0.2, 2 * FROM_1_TO_2), log_third(10, 0.8), 0],
+        "far": [log_third(10 / 3, 2 * FROM_1_TO_0 + 0.2, 2 * FROM_1_TO_2), log_third(10 / 3, 0.8), 0],
+        "near_first": [0, 0, 0],
+        "far_first": [0, 0, 0],
     }
     assert expected.keys() == set(TASK_COLUMNS)
     for name, values in expected.items():
@@ -118,11 +130,11 @@ def test_what_is_known_of_robots_and_mission() -> None:
 
 def test_pairs() -> None:
     pairs = candidates(BatchMission(ScenarioBatch.of([SCENARIO]))).pairs()[0, 0]
-    assert pairs.shape == (2 + 4, 4, 5)
+    assert pairs.shape == (5, 2 + 4, 4)
 
     def check(row: int, column: int, time: float, spare: float) -> None:
         wanted = [time, np.exp(-10 * time), np.exp(-3 * time), spare, float(spare >= 0)]
-        assert pairs[row, column].tolist() == pytest.approx(wanted, abs=1e-6)
+        assert pairs[:, row, column].tolist() == pytest.approx(wanted, abs=1e-6)
 
     # Robots 0 and 1, then the candidates 1, 0, 2; columns are the candidates 1, 0, 2.
     check(0, 0, 0.2 + 0.4, 1 - 0.6)
@@ -250,3 +262,60 @@ def test_where_a_mission_is_over_nothing_is_likelier_and_gradients_are_finite() 
     gradients = [p.grad for p in network.parameters() if p.grad is not None]
     assert gradients
     assert all(torch.isfinite(each).all() for each in gradients)
+
+
+def test_prospects_in_the_middle_of_missions() -> None:
+    """Against the same computed task by task, in the scenario's own units, with robots under way and time gone by."""
+    checked = first = 0
+    for scenario in seeded_scenarios(77, 400):
+        if scenario.num_tasks < 4 or scenario.num_robots < 2:
+            continue
+        mission, choose = BatchMission(ScenarioBatch.of([scenario])), seeded_chooser(scenario.num_tasks)
+        for _ in range(scenario.num_tasks // 2):
+            if bool(mission.done.all()):
+                break
+            mission.step(torch.tensor([choose(mission.mask()[0].numpy())]))
+        if bool(mission.done.all()):
+            continue
+        found = candidates(mission, most_tasks=3, most_peers=99)
+        ego, now = int(mission.actor[0]), float(mission.time[0])
+        crossing = max(scenario.map_size) / scenario.speed.max()
+        position, ready = mission.position[0].numpy(), mission.ready[0].numpy()
+        mask = mission.mask()[0].numpy()
+
+        def way(a: np.ndarray, b: np.ndarray, robot: int, of: Scenario = scenario) -> float:
+            return float(np.hypot(*(a - b)) / of.speed[robot])
+
+        def work(task: int, robot: int = ego, of: Scenario = scenario) -> float:
+            return float(of.workload[task] / of.capacity[robot])
+
+        peers = [m for m in range(scenario.num_robots) if m != ego and not bool(mission.retired[0, m])]
+        for place, task in enumerate(found.index[0, 0].tolist()):
+            if not found.valid[0, 0, place]:
+                continue
+            free = now + way(position[ego], scenario.task_xy[task], ego) + work(task)
+            counts, close = dict.fromkeys(PROSPECT_COLUMNS, 0.0), False
+            for other in np.flatnonzero(mask).tolist():
+                if other == task:
+                    continue
+                travel = way(scenario.task_xy[task], scenario.task_xy[other], ego)
+                arrival, deadline = free + travel, scenario.deadline[other]
+                rival = min(
+                    (max(ready[m], now) + way(position[m], scenario.task_xy[other], m) for m in peers), default=np.inf
+                )
+                close |= min(abs(arrival + work(other) - deadline), abs(arrival - rival)) < 1e-4 * crossing
+                if arrival + work(other) > deadline:
+                    continue
+                for name, scale in (("near", 0.1), ("far", 0.3)):
+                    weight = float(np.exp(-(travel + work(other)) / crossing / scale))
+                    counts[name] += weight
+                    counts[f"{name}_first"] += weight * (arrival <= rival)
+            if close:  # to a bound, where rounding decides
+                continue
+            for name, count in counts.items():
+                value = float(found.task[0, 0, place, TASK_COLUMNS.index(name)])
+                assert value == pytest.approx(np.log1p(count) / 3, rel=1e-3, abs=1e-4), (scenario.name, task, name)
+            checked += 1
+            first += 0 < counts["far_first"] < counts["far"]
+    assert checked > 100
+    assert first > 10

@@ -17,7 +17,7 @@ from sentences import check_sentence
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.train import bare, experts
+from mrta_zoo.train import bare, experts, imitator
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.experts import make_shard
 from mrta_zoo.train.presets import PRESETS
@@ -108,11 +108,17 @@ def test_writes_the_best_weights_by_validation(tmp_path: Path, plans: Path) -> N
     assert arrays(tmp_path / "out.npz").keys() == {"about", *run.network.state_dict()}
 
 
-@pytest.mark.parametrize("sharing", ["shared", "independent"])
+@pytest.mark.parametrize(
+    "change",
+    [{}, {"sharing": "independent"}, {"imitation_decisions": 3, "entropy": 0.1}],
+    ids=["shared", "independent", "pool"],
+)
 def test_interrupted_and_resumed_is_uninterrupted(
-    tmp_path: Path, plans: Path, monkeypatch: pytest.MonkeyPatch, sharing: str
+    tmp_path: Path, plans: Path, monkeypatch: pytest.MonkeyPatch, change: dict[str, Any]
 ) -> None:
-    config = replace(TINY, sharing=sharing)  # type: ignore[arg-type]
+    config = replace(TINY, **change)
+    monkeypatch.setattr(imitator, "POOL_PLANS", 20)
+    monkeypatch.setattr(imitator, "POOL_STEPS", 3)
     bare.train(config, tmp_path / "straight", plans)
     stops = []
     for seconds in (4, 5, 4):  # by a clock that moves on by one each time somebody looks

@@ -68,7 +68,7 @@ def test_plans_that_are_there_are_not_made_again(tmp_path: Path, monkeypatch: py
         tasks=(5,), reference_tasks=5, max_robots=2, imitation_updates=1, imitation_plans=4, imitation_batch=2
     )
     made = experts.make_shard(config, 0, tmp_path)
-    monkeypatch.setattr(plans, "ProcessPoolExecutor", None)  # whoever wants to make plans fails
+    monkeypatch.setattr(plans, "pool_of", None)  # whoever wants to make plans fails
     got = plans.make_plans(config, tmp_path)
     assert made == tmp_path / "0000000.npz"
     assert [plan.scenario for plan in got] == [experts.expert_scenario(config, number) for number in range(4)]

@@ -44,6 +44,18 @@ def test_plans_come_back_with_their_scenarios(tmp_path: Path) -> None:
     assert read_plans(CONFIG, tmp_path / "nothing here", 5) == []
 
 
+def test_other_processes_read_the_same_plans(tmp_path: Path) -> None:
+    for first in (0, 4, 8):
+        make_shard(CONFIG, first, tmp_path)
+    (tmp_path / "0000008.npz").write_bytes(b"no plans")  # where it is not needed it does no harm
+    here, there = (read_plans(CONFIG, tmp_path, 7, workers) for workers in (0, 1))
+    assert len(here) == 7
+    assert [plan.routes for plan in here] == [plan.routes for plan in there]
+    assert [plan.scenario.task_xy.tolist() for plan in here] == [plan.scenario.task_xy.tolist() for plan in there]
+    with pytest.raises(ConfigError, match=r"0000008\.npz: not a readable file of plans"):
+        read_plans(CONFIG, tmp_path, 100, workers=1)
+
+
 def test_scenarios_follow_from_seed_and_number() -> None:
     same, other, reseeded = (
         expert_scenario(config, number).task_xy.tolist()

@@ -114,12 +114,13 @@ def test_symmetries_by_hand() -> None:
     square = Scenario([[10, 30]], [90], [1], [[0, 40]], [1], map_size=(100, 100))  # type: ignore[arg-type]
     wide = Scenario([[10, 30]], [90], [1], [[0, 40]], [1], map_size=(200, 100))  # type: ignore[arg-type]
     batch = ScenarioBatch.of([square, wide])
-    places = [turned(batch, symmetry).task_xy[:, 0].tolist() for symmetry in range(8)]
+    places = [turned(batch, torch.full((2,), symmetry)).task_xy[:, 0].tolist() for symmetry in range(8)]
     assert [place for place, _ in places] == [
         [10, 30], [90, 30], [10, 70], [90, 70], [30, 10], [30, 90], [70, 10], [70, 90]
     ]  # fmt: skip
     assert [place for _, place in places] == [[10, 30], [190, 30], [10, 70], [190, 70]] * 2
-    assert turned(batch, 5).robot_xy[:, 0].tolist() == [[40, 100], [200, 40]]
+    assert turned(batch, torch.tensor([5, 5])).robot_xy[:, 0].tolist() == [[40, 100], [200, 40]]
+    assert turned(batch, torch.tensor([5, 2])).robot_xy[:, 0].tolist() == [[40, 100], [0, 60]]
 
 
 def test_symmetries_keep_distances_and_everything_else() -> None:
@@ -132,7 +133,7 @@ def test_symmetries_keep_distances_and_everything_else() -> None:
         return torch.cdist(points, points)
 
     for symmetry in range(8):
-        seen = turned(batch, symmetry)
+        seen = turned(batch, torch.full((len(cases),), symmetry))
         for row, case in enumerate(cases):
             size = max(case.map_size)
             torch.testing.assert_close(distances(seen, row), distances(batch, row), rtol=0, atol=1e-9 * size)
@@ -143,7 +144,7 @@ def test_symmetries_keep_distances_and_everything_else() -> None:
             if each.name not in ("task_xy", "robot_xy"):
                 assert torch.equal(getattr(seen, each.name), getattr(batch, each.name)), each.name
         if symmetry < 4:  # flips
-            again = turned(seen, symmetry)
+            again = turned(seen, torch.full((len(cases),), symmetry))
             size = batch.map_size.amax(1)[:, None, None]
             assert ((again.task_xy - batch.task_xy).abs() <= 1e-12 * size).all()
             assert ((again.robot_xy - batch.robot_xy).abs() <= 1e-12 * size).all()
@@ -151,5 +152,5 @@ def test_symmetries_keep_distances_and_everything_else() -> None:
 
 def test_the_eight_symmetries_differ() -> None:
     batch = ScenarioBatch.of([Scenario([[10, 30]], [90], [1], [[0, 40]], [1])])  # type: ignore[arg-type]
-    images = sorted(tuple(turned(batch, symmetry).task_xy.flatten().tolist()) for symmetry in range(8))
+    images = sorted(tuple(turned(batch, torch.tensor([symmetry])).task_xy.flatten().tolist()) for symmetry in range(8))
     assert all(one != other for one, other in pairwise(images))

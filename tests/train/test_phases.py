@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
 
 import numpy as np
@@ -16,6 +16,8 @@ from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.capam.inputs import Tasks
 from mrta_zoo.policies.local_search.eils import EilsConfig, EilsSolver
+from mrta_zoo.policies.rollout import Segment
+from mrta_zoo.train import imitator, reinforce
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, most_robots, team
 from mrta_zoo.train.experts import ExpertPlan, expert_scenario
@@ -50,11 +52,16 @@ def cross_entropy(run: Reinforce, plans: list[ExpertPlan]) -> float:
     return total / count
 
 
+@pytest.mark.parametrize("decisions", [0, 8], ids=["all-decisions", "pool"])
 @pytest.mark.parametrize("network", [ATTENTION, CANDIDATES], ids=["attention", "candidates"])
-def test_imitation_alone_prefers_what_experts_do(network: NetworkConfig) -> None:
+def test_imitation_alone_prefers_what_experts_do(
+    network: NetworkConfig, decisions: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(imitator, "POOL_PLANS", 200)
+    monkeypatch.setattr(imitator, "POOL_STEPS", 25)
     config = replace(
         TINY, network=network, imitation_updates=60, imitation_plans=128, imitation_batch=32,
-        imitation_learning_rate=5e-3,
+        imitation_decisions=decisions, imitation_learning_rate=5e-3,
     )  # fmt: skip
     run = Reinforce(config)
     run.set_plans(plans_of(config, 0, 128))
@@ -105,7 +112,8 @@ def test_step_sizes_of_both_phases() -> None:
         final_learning_rate=3e-5, epoch=100,
     )  # fmt: skip
     run = Reinforce(config)
-    run._imitate = run._reinforce = lambda: (0.0, 1)  # type: ignore[method-assign]
+    run._imitator.accumulate = lambda update: (0.0, 1)  # type: ignore[method-assign]
+    run._reinforce = lambda: (0.0, 1)  # type: ignore[method-assign]
     rates = [run.step().learning_rate for _ in range(100)]
     # Imitation: a cosine from 1e-3 to 1e-4 over 40 updates, whose start is damped by (update + 1)/20 at first.
     assert rates[0] == pytest.approx(1e-4 + (5e-5 - 1e-4))  # 1e-3 · 1/20 = 5e-5, cos 0 = 1
@@ -118,6 +126,53 @@ def test_step_sizes_of_both_phases() -> None:
     assert rates[99] == pytest.approx(3e-5 + 2.7e-4 * (1 + math.cos(math.pi * 59 / 60)) / 2)
     assert max(rates[:40]) < 1e-3
     assert max(rates[40:]) < 3e-4
+
+
+def test_a_pool_serves_some_steps_and_holds_plans_of_each_size_by_its_weight(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(imitator, "POOL_PLANS", 60)
+    monkeypatch.setattr(imitator, "POOL_STEPS", 4)
+    config = replace(TINY, tasks=(8, 10), task_weights=(1.0, 3.0), imitation_updates=12, imitation_decisions=3)
+    run = Reinforce(config)
+    run.set_plans(plans_of(config, 0, 16))
+    made: list[tuple[int, int, int]] = []
+    places: list[float] = []
+
+    class Noted(imitator.DecisionPool):
+        def __init__(self, scenarios: ScenarioBatch, segments: Sequence[Segment]) -> None:
+            made.append((run.update // 4, scenarios.num_tasks, len(scenarios)))
+            places.append(float(scenarios.task_xy.sum()))
+            super().__init__(scenarios, segments)
+
+    monkeypatch.setattr(imitator, "DecisionPool", Noted)
+    decisions = [run.step().decisions for _ in range(12)]
+    assert len(set(made)) == len(made), "one of each size, while it serves"
+    assert {number for number, *_ in made} == {0, 1, 2}
+    assert {size: count for _, size, count in made} == {8: 4, 10: 12}  # 4 steps of 4 plans, 1/4 and 3/4 of these
+    assert len(set(places)) == len(places), "each time of other plans, seen otherwise"
+    assert set(decisions) <= {3 * plans for plans in range(1, 5)}  # 4 plans, 3 decisions of each that has any
+    assert run._imitator._pools[1]
+    run.step()
+    assert not run._imitator._pools[1]  # they take memory
+    assert not run._imitator._plans
+
+
+def test_the_entropy_bonus_falls_to_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    weights: list[float] = []
+
+    def noted(
+        network: object, scenarios: object, segments: object, advantage: object, entropy: float, *_: str
+    ) -> float:
+        weights.append(entropy)
+        return 0.0
+
+    monkeypatch.setattr(reinforce, "accumulate_gradients", noted)
+    run = Reinforce(replace(TINY, imitation_updates=0, updates=10, entropy=0.3))
+    monkeypatch.setattr(torch.nn.utils, "clip_grad_norm_", lambda *_: torch.zeros(()))
+    for _ in range(10):
+        run.step()
+    assert weights == pytest.approx([0.3 * (1 + math.cos(math.pi * k / 10)) / 2 for k in range(10)])
+    assert weights[0] == 0.3
+    assert weights[5] == pytest.approx(0.15)
 
 
 def test_sizes_are_drawn_by_their_weights() -> None:

@@ -244,6 +244,8 @@ def test_divergence_is_told_and_changes_no_weights() -> None:
         ({"task_weights": (0.0,)}, r"task_weights is \(0.0,\); expected 1 numbers > 0"),
         ({"reference_tasks": 0}, "reference_tasks is 0; expected a whole number >= 1"),
         ({"imitation_updates": -1}, "imitation_updates is -1; expected a whole number >= 0"),
+        ({"imitation_decisions": -1}, "imitation_decisions is -1; expected a whole number >= 0"),
+        ({"imitation_decisions": 10**9}, "imitation_decisions is 1000000000; expected at most 10,000"),
         (
             {"imitation_updates": 1, "imitation_plans": 63},
             "imitation_plans is 63; expected at least imitation_batch, 64",

@@ -1,0 +1,58 @@
+"""Processes that work for another one, and end with it."""
+
+from __future__ import annotations
+
+import multiprocessing
+import multiprocessing.connection
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+
+from mrta_zoo.errors import ConfigError
+
+DIED = (
+    "a process that was at work was killed, for want of memory perhaps; try again, with fewer --workers if it had many"
+)
+
+
+@contextmanager
+def pool_of(workers: int) -> Iterator[ProcessPoolExecutor]:
+    """A pool whose processes end at once where the block is left by an exception, be it Ctrl-C.
+
+    Args:
+        workers: number of processes.
+
+    Raises:
+        ConfigError: if one of the processes dies.
+    """
+    with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), obey_parent) as pool:
+        try:
+            yield pool
+        except BaseException as error:
+            for process in list((pool._processes or {}).values()):
+                process.terminate()
+            pool.shutdown(wait=False, cancel_futures=True)
+            if isinstance(error, BrokenProcessPool):
+                raise ConfigError(DIED) from None
+            raise
+
+
+def obey_parent() -> None:
+    """Leave Ctrl-C to the parent alone, and end when it ends; the initialiser of a pool's processes."""
+    # Linux shares cores out by session: each process with one of its own gets its own share.
+    if hasattr(os, "setsid"):
+        os.setsid()
+    else:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    multiprocessing.connection.wait([parent.sentinel])
+    os._exit(1)
