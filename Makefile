@@ -43,6 +43,7 @@ benchmark: $(INSTALLED)
 	$(BIN)/python -m mrta_zoo.eval.benchmarks.aec_turns
 
 $(INSTALLED): pyproject.toml constraints.txt
+	@echo "installing into $(VENV): two minutes or so, in silence"
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --upgrade pip
 	PYTHONWARNINGS=ignore $(BIN)/pip install --quiet --constraint constraints.txt --editable ".[dev]"

@@ -65,6 +65,10 @@ class SeveralNetworks(nn.Module):
         """Embed the tasks, once a mission and network."""
         return SeveralEncodings(tasks, tuple(network.encode(tasks) for network in self.networks))
 
+    def surroundings(self, tasks: Tasks) -> SeveralEncodings:
+        """As `AllocationNetwork.surroundings`."""
+        return SeveralEncodings(tasks, (self.networks[0].surroundings(tasks),))
+
     def features(self, encoding: SeveralEncodings, moments: Moments) -> Candidates | None:
         """As `AllocationNetwork.features`: they hold no weights, so one network's serve all."""
         return self.networks[0].features(encoding.of_network[0], moments)

@@ -27,7 +27,7 @@ class View:
     Attributes:
         flip: (S, 2) bool, whether x and y run backwards.
         swap: (S,) bool, whether the axes are swapped, after flipping.
-        extent: (S, 2) float32 width and height of the map as shares of the longer side.
+        extent: (S, 2) width and height of the map, in the unit of places.
     """
 
     flip: Tensor
@@ -38,15 +38,19 @@ class View:
     def of(cls, scenarios: ScenarioBatch) -> View:
         """The symmetries 0 … 7, again and again, of S scenarios of which each 8 in a row are the same."""
         number = torch.arange(len(scenarios), device=scenarios.device) % SYMMETRIES
-        flip = torch.stack((number & 1, number & 2), -1) > 0
-        return cls(flip, (number & 4) > 0, (scenarios.map_size / scenarios.map_size.amax(1, keepdim=True)).float())
+        return cls.numbered(number, (scenarios.map_size / scenarios.map_size.amax(1, keepdim=True)).float())
+
+    @classmethod
+    def numbered(cls, number: Tensor, extent: Tensor) -> View:
+        """The symmetries by their numbers, (S,) int64 in 0 to 7, on maps that extend so far."""
+        return cls(torch.stack((number & 1, number & 2), -1) > 0, (number & 4) > 0, extent)
 
     def select(self, index: Tensor) -> View:
         """How some of the scenarios are looked at."""
         return View(self.flip[index], self.swap[index], self.extent[index])
 
     def of_places(self, xy: Tensor) -> Tensor:
-        """(S, …, 2) places, in lengths of the longer side, as they are seen."""
+        """(S, …, 2) places as they are seen."""
         shape = (len(xy), *[1] * (xy.dim() - 2), 2)
         flipped = torch.where(self.flip.view(shape), self.extent.view(shape) - xy, xy)
         return torch.where(self.swap.view((*shape[:-1], 1)), flipped.flip(-1), flipped)

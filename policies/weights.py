@@ -146,7 +146,10 @@ def load_state(network: Network, tensors: dict[str, torch.Tensor], path: Path) -
     expected = network.state_dict()
     for name, tensor in expected.items():
         if name not in tensors:
-            raise ConfigError(f"{path}: tensor {name!r} is missing; the weights belong to another architecture")
+            raise ConfigError(
+                f"{path}: tensor {name!r} is missing; the weights belong to another architecture, or a policy that an "
+                "earlier version saved has to be trained anew"
+            )
         if tensors[name].shape != tensor.shape:
             raise ConfigError(
                 f"{path}: tensor {name!r} has shape {tuple(tensors[name].shape)}; "

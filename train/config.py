@@ -14,7 +14,7 @@ from mrta_zoo.rules import MaskRule
 from mrta_zoo.train.precision import Precision
 
 BaselineName = Literal["samples", "rollout", "exponential"]
-ObjectiveName = Literal["cost", "completion"]
+ObjectiveName = Literal["cost", "completion", "relative"]
 GeneratorName = Literal["taptc", "uniform", "mixture"]
 MOST_DECISIONS = 10_000
 """Far more than a plan has."""
@@ -46,8 +46,9 @@ class TrainConfig:
         imitation_decisions: decisions of each of them, at most 10,000, drawn at random from a pool of up to 8,192 plans
             that is made anew now and then (`mrta_zoo.train.imitator`), quicker on a GPU; 0 for all, and no pool.
         imitation_learning_rate: Adam's step size at the start of the imitation; falls to a tenth along a cosine.
-        objective: what to minimise: "cost" (Eq. 1 of the paper, divided by the number of tasks), or one minus the
-            completion rate ("completion").
+        objective: what to minimise: "cost" (Eq. 1 of the paper, divided by the number of tasks), one minus the
+            completion rate ("completion"), or −ln(1 + number of completed tasks) ("relative"), for which missions
+            with few robots, of which no plan completes much, count as much as others.
         baseline: what a mission's outcome is compared with: the mean of the other samples of its scenario
             ("samples"), the greedy rollout of the best policy so far, replaced when a paired t-test says that
             the present one is better ("rollout", the paper's), or a moving average over updates ("exponential").
@@ -61,6 +62,8 @@ class TrainConfig:
         normalise: whether advantages are divided by their standard deviation over the batch.
         entropy: weight of an entropy bonus, per decision, at the start; falls to nothing along the same cosine. Without
             it the policy is soon all but certain of what it does, and tries nothing else.
+        temperature: REINFORCE samples from the probabilities p^(1/temperature), normalised, and improves these. Below 1
+            it begins, after imitation, close to what the policy likes best, not with what imitation left open.
         epoch: updates between two validations, each with a checkpoint, and with the baseline's t-test.
         validation_scenarios: number of validation scenarios, drawn once from the training distribution.
         significance: level of the baseline's t-test.
@@ -98,6 +101,7 @@ class TrainConfig:
     clip_norm: float = 1.0
     normalise: bool = True
     entropy: float = 0.0
+    temperature: float = 1.0
     epoch: int = 50
     validation_scenarios: int = 96
     significance: float = 0.05
@@ -142,7 +146,7 @@ class TrainConfig:
             raise ConfigError(
                 f"imitation_plans is {self.imitation_plans}; expected at least imitation_batch, {self.imitation_batch}"
             )
-        for name in ("learning_rate", "imitation_learning_rate", "final_learning_rate", "clip_norm"):
+        for name in ("learning_rate", "imitation_learning_rate", "final_learning_rate", "clip_norm", "temperature"):
             if not 0 < getattr(self, name) < math.inf:
                 raise ConfigError(f"{name} is {getattr(self, name)}; expected a number > 0")
         if self.max_robots < self.min_robots:

@@ -11,13 +11,12 @@ from torch import Tensor
 
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.policies.capam.inputs import Tasks
-from mrta_zoo.policies.rollout import Segment
-from mrta_zoo.policies.sharing import Network
+from mrta_zoo.policies.rollout import Scorer, Segment
 from mrta_zoo.train.precision import Precision, autocast
 
 
 def accumulate_gradients(
-    network: Network,
+    network: Scorer,
     scenarios: ScenarioBatch,
     segments: Sequence[Segment],
     advantage: Tensor,

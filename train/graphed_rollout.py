@@ -15,6 +15,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.inputs import Tasks
 from mrta_zoo.policies.rollout import NOT_FINITE, Rollout, Segment, run_segment
 from mrta_zoo.policies.sharing import Network
+from mrta_zoo.policies.temperature import tempered
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.train.cuda_graph import Graph
 from mrta_zoo.train.imitation import follow_segment
@@ -42,12 +43,20 @@ class GraphedRollout:
         mask_rule: what robots may choose.
         precision: of matrix products.
         device: the GPU.
+        temperature: of the policy that samples.
     """
 
     def __init__(
-        self, network: Network, samples: int, mask_rule: MaskRule, precision: Precision, device: torch.device
+        self,
+        network: Network,
+        samples: int,
+        mask_rule: MaskRule,
+        precision: Precision,
+        device: torch.device,
+        temperature: float = 1.0,
     ) -> None:
         self._network, self._samples, self._mask_rule = network, samples, mask_rule
+        self._policy = tempered(network, temperature)
         self._precision: Precision = precision
         self._generator = torch.Generator(device)
         self._graphs: dict[tuple[int, ...], Graph[_Missions, Any]] = {}
@@ -87,7 +96,7 @@ class GraphedRollout:
     @torch.no_grad()
     def follow(self, scenarios: ScenarioBatch, routes: Tensor) -> list[Segment]:
         """The decisions behind plans, as `imitation.follow` would give them."""
-        encoding = self._network.encode(Tasks.of_batch(scenarios))
+        encoding = self._network.surroundings(Tasks.of_batch(scenarios))
         mission = BatchMission(scenarios, "feasible")
         rows = torch.arange(len(scenarios), device=scenarios.device)
         position = torch.zeros(routes.shape[:2], dtype=torch.int64, device=routes.device)
@@ -110,7 +119,7 @@ class GraphedRollout:
         # Without autocast's cache, which would keep weights as they were when the graph was recorded.
         with autocast(state.rows.device, self._precision, cache=False), sdpa_kernel(ATTENTION):
             log_prob = run_segment(
-                self._network, state.encoding, state.mission, self._samples, self._generator, state.rows, segments
+                self._policy, state.encoding, state.mission, self._samples, self._generator, state.rows, segments
             )
         return segments[0], log_prob
 

@@ -12,6 +12,7 @@ from mrta_zoo.batch import BatchMission, ScenarioBatch
 from mrta_zoo.policies.capam.inputs import Tasks, Watch
 from mrta_zoo.policies.rollout import SEGMENT, Segment, Taken
 from mrta_zoo.policies.sharing import Network
+from mrta_zoo.policies.symmetry import View
 from mrta_zoo.train.experts import ExpertPlan
 
 
@@ -22,16 +23,9 @@ def turned(scenarios: ScenarioBatch, symmetry: Tensor) -> ScenarioBatch:
         scenarios: S scenarios.
         symmetry: (S,) int64 in 0 to 7; bit 0 flips x, bit 1 flips y, bit 2 swaps the axes.
     """
-    sides = scenarios.map_size[:, None]
-    flip = torch.stack(((symmetry & 1).bool(), (symmetry & 2).bool()), -1)[:, None]
-    square = sides[..., 0] == sides[..., 1]
-    swap = (square & (symmetry & 4).bool()[:, None])[..., None]
-
-    def turn(places: Tensor) -> Tensor:
-        places = torch.where(flip, sides - places, places)
-        return torch.where(swap, places.flip(-1), places)
-
-    return replace(scenarios, task_xy=turn(scenarios.task_xy), robot_xy=turn(scenarios.robot_xy))
+    square = scenarios.map_size[:, 0] == scenarios.map_size[:, 1]
+    view = View.numbered(torch.where(square, symmetry, symmetry & 3), scenarios.map_size)
+    return replace(scenarios, task_xy=view.of_places(scenarios.task_xy), robot_xy=view.of_places(scenarios.robot_xy))
 
 
 class PlanBatch:
@@ -67,7 +61,7 @@ def follow(network: Network, scenarios: ScenarioBatch, routes: Tensor) -> list[S
         routes: (S, M, T) int64 the tasks of each robot in order, at least one −1 behind them; each finishes in time.
     """
     mission = BatchMission(scenarios, "feasible")
-    encoding = network.encode(Tasks.of_batch(scenarios))
+    encoding = network.surroundings(Tasks.of_batch(scenarios))
     rows = torch.arange(len(scenarios), device=scenarios.device)
     position = torch.zeros(routes.shape[:2], dtype=torch.int64, device=routes.device)
     segments: list[Segment] = []
@@ -83,7 +77,7 @@ def follow_segment(
 
     Args:
         network: as for `follow`, as is `routes`.
-        encoding: of the scenarios, by `network`.
+        encoding: of the scenarios, by `network`, or only their surroundings.
         mission: S missions.
         routes: their routes.
         position: (S, M) int64 how many tasks of its route each robot has taken.

@@ -25,7 +25,16 @@ def missed_share(rollout: Rollout, scenarios: ScenarioBatch) -> Tensor:
     return 1 - rollout.completed / _tasks(rollout, scenarios)
 
 
-OBJECTIVES: dict[str, Objective] = {"cost": cost_per_task, "completion": missed_share}
+def relative(rollout: Rollout, scenarios: ScenarioBatch) -> Tensor:
+    """−ln(1 + number of completed tasks): a task more counts as a share of what there is.
+
+    So missions in which few tasks can be done, which otherwise hardly differ, are learned from as much as others.
+    """
+    del scenarios
+    return -(1.0 + rollout.completed.double()).log()
+
+
+OBJECTIVES: dict[str, Objective] = {"cost": cost_per_task, "completion": missed_share, "relative": relative}
 
 
 def checked(objective: Objective) -> Objective:

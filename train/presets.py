@@ -29,16 +29,19 @@ BROAD = TrainConfig(
     seed=7,
 )
 
-# The paper's networks with the same budget each: 38,400 plans seen in imitation, then 201,600 episodes.
+# The paper's networks with the same budget each: 18,432 plans seen in imitation, then 34,560 episodes.
 PAPER_NETWORK = replace(
     BROAD,
-    imitation_updates=600,
+    imitation_updates=288,
     imitation_batch=64,
+    imitation_decisions=32,
+    objective="relative",
     scenarios=12,
-    updates=2100,
-    epoch=100,
-    learning_rate=4e-4,
-    final_learning_rate=1e-5,
+    updates=360,
+    epoch=72,
+    learning_rate=5e-5,
+    final_learning_rate=5e-6,
+    temperature=0.5,
 )
 
 PRESETS: dict[str, TrainConfig] = {

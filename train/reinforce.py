@@ -21,6 +21,7 @@ from mrta_zoo.generators import ScenarioGenerator, draw_scenario
 from mrta_zoo.policies.capam.candidate_decoder import CandidateDecoder
 from mrta_zoo.policies.rollout import roll_out
 from mrta_zoo.policies.sharing import Network, build_network
+from mrta_zoo.policies.temperature import tempered
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.train.baselines import Baseline, build_baseline
 from mrta_zoo.train.config import TrainConfig
@@ -133,7 +134,9 @@ class Reinforce:
         # Encodings of several networks are not worth the care: they are for comparisons, not for speed.
         graphs = self.device.type == "cuda" and config.sharing == "shared"
         self._graphed = (
-            GraphedRollout(self.network, config.samples, config.mask_rule, config.precision, self.device)
+            GraphedRollout(
+                self.network, config.samples, config.mask_rule, config.precision, self.device, config.temperature
+            )
             if graphs
             else None
         )
@@ -185,7 +188,7 @@ class Reinforce:
 
     def _reinforce(self) -> tuple[float, int]:
         """Gradients of REINFORCE; the mean loss, and the number of decisions."""
-        config = self.config
+        config, policy = self.config, tempered(self.network, self.config.temperature)
         drawn = self._feed.take(self.update)
         scenarios = drawn.scenarios.to(self.device)
         if self._graphed:
@@ -193,7 +196,7 @@ class Reinforce:
         else:
             with autocast(self.device, config.precision):
                 rollout = roll_out(
-                    self.network,
+                    policy,
                     scenarios,
                     samples=config.samples,
                     generator=torch.Generator(self.device).manual_seed(drawn.seed),
@@ -205,7 +208,7 @@ class Reinforce:
         if config.normalise:
             advantage = advantage / (advantage.std() + 1e-6)
         entropy = config.entropy * self._cosine()
-        accumulate_gradients(self.network, scenarios, rollout.segments, advantage, entropy, config.precision)
+        accumulate_gradients(policy, scenarios, rollout.segments, advantage, entropy, config.precision)
         return float(loss.mean()), sum(int(segment.live.sum()) for segment in rollout.segments)
 
     def validate(self) -> Validation:

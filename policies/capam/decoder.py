@@ -1,4 +1,4 @@
-"""The decoder: multi-head attention from the query to the tasks, then one score a task (paper §III-B)."""
+"""The decoder: attention from the query to the tasks, a feed-forward layer, a score for each task (paper §III-B)."""
 
 from __future__ import annotations
 
@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 import torch
 from torch import Tensor, nn
+
+WIDENED = 4
+"""How many times the embedding the feed-forward layer is wide, as in Vaswani et al. (2017)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,11 +32,15 @@ class Keys:
 
 
 class AttentionDecoder(nn.Module):
-    """Attention glimpse over the tasks, then clipped compatibility scores (Kool et al. 2019, as the paper's Eq. 6).
+    """Attention from the query to the tasks (paper Eqs. 5-6), a feed-forward layer, then clipped scores.
+
+    Scores are compatibilities with the tasks, as in Kool et al. (2019). Deviations from the paper, which says little of
+    the feed-forward layer and puts batch norms around it: the query goes past the attention (a residual connection, as
+    in Vaswani et al. 2017), and a layer norm takes the place of batch norms, so that no decision depends on others.
 
     Args:
         embedding: h.
-        heads: number of heads of the glimpse, h_e = 8 in the paper.
+        heads: number of attention heads, h_e = 8 in the paper.
         tanh_clip: scores lie in ± this.
     """
 
@@ -43,6 +50,10 @@ class AttentionDecoder(nn.Module):
         self.tanh_clip = tanh_clip
         self.keys_values = nn.Linear(embedding, 3 * embedding, bias=False)
         self.out = nn.Linear(embedding, embedding, bias=False)
+        self.norm = nn.LayerNorm(embedding)
+        self.feed_forward = nn.Sequential(
+            nn.Linear(embedding, WIDENED * embedding), nn.ReLU(), nn.Linear(WIDENED * embedding, embedding)
+        )
 
     def keys(self, embeddings: Tensor) -> Keys:
         """Keys and values of (S, N, h) embeddings."""
@@ -53,25 +64,24 @@ class AttentionDecoder(nn.Module):
             score_key=score_key.transpose(1, 2).contiguous(),
         )
 
-    def forward(self, query: Tensor, keys: Keys, mask: Tensor, bias: Tensor | None = None) -> Tensor:
+    def forward(self, query: Tensor, keys: Keys, mask: Tensor) -> Tensor:
         """Score every task.
 
         Args:
             query: (S, G, h) one query a decision.
             keys: of the tasks.
             mask: (S, G, N) bool, what may be chosen; where nothing may, scores are meaningless but finite.
-            bias: (S, G, N, heads) added to the glimpse's compatibilities, or None.
 
         Returns:
             (S, G, N) scores in ± `tanh_clip`, not masked.
         """
         heads_query = query.unflatten(-1, (self.heads, -1)).transpose(1, 2)
         compatibility = heads_query @ keys.glimpse_key / math.sqrt(heads_query.shape[-1])
-        if bias is not None:
-            compatibility = compatibility + bias.permute(0, 3, 1, 2)
         # The lowest finite number, not -inf, so that a decision without any choice gives no NaN.
         compatibility = compatibility.masked_fill(~mask[:, None], torch.finfo(query.dtype).min)
         glimpse = (compatibility.softmax(-1) @ keys.glimpse_value).transpose(1, 2).flatten(2)
-        score = self.out(glimpse) @ keys.score_key / math.sqrt(query.shape[-1])
+        hidden = self.norm(query + self.out(glimpse))
+        hidden = hidden + self.feed_forward(hidden)
+        score = hidden @ keys.score_key / math.sqrt(query.shape[-1])
         clipped: Tensor = self.tanh_clip * score.tanh()
         return clipped

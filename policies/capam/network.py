@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import torch
 from torch import Tensor, nn
@@ -81,7 +81,13 @@ class AllocationNetwork(nn.Module):
             embeddings = embeddings.float()
         if isinstance(self.decoder, AttentionDecoder):
             return Encoding(tasks, keys=self.decoder.keys(embeddings))
-        return Encoding(tasks, embeddings=self.decoder.encoded(embeddings), neighbourhood=Neighbourhood.of(tasks))
+        return replace(self.surroundings(tasks), embeddings=self.decoder.encoded(embeddings))
+
+    def surroundings(self, tasks: Tasks) -> Encoding:
+        """As much of an encoding as `features` needs, which takes no encoder: for those who only watch."""
+        if isinstance(self.decoder, AttentionDecoder):
+            return Encoding(tasks)
+        return Encoding(tasks, neighbourhood=Neighbourhood.of(tasks))
 
     def features(self, encoding: Encoding, moments: Moments) -> Candidates | None:
         """What `forward` needs to know of these moments besides, or None; no gradients flow through it."""

@@ -225,7 +225,7 @@ def test_no_method_beats_the_optimum(name: str) -> None:
         skip_unless_installed(name)
     else:
         pytest.importorskip("torch")
-    solver = make_solver(name, seed=1, budget=0.1 if name in METHODS else None)
+    solver = make_solver(name, seed=1, budget=0.03 if name in METHODS else None)  # plenty for so few tasks
     for index, scenario in enumerate(compared_scenarios()):
         completed = verify(scenario, solver.solve(scenario)).completed
         assert completed <= verify(scenario, optimal(index)).completed

@@ -113,8 +113,10 @@ def test_the_same_weights_serve_any_number_of_tasks_and_robots(config: NetworkCo
 
 
 @pytest.mark.parametrize("config", CONFIGS.values(), ids=CONFIGS)
-@pytest.mark.parametrize("sharing", ["shared", "independent"])
-@pytest.mark.parametrize("rule", ["feasible", "active", "unvisited"])
+@pytest.mark.parametrize(
+    ("sharing", "rule"),
+    [("shared", "feasible"), ("shared", "active"), ("shared", "unvisited"), ("independent", "feasible")],
+)
 def test_the_environment_and_the_batch_take_the_same_decisions(
     config: NetworkConfig, sharing: str, rule: MaskRule
 ) -> None:
@@ -161,6 +163,19 @@ def test_observations_and_simulator_give_the_network_the_same_numbers(config: Ne
         mission.step(torch.tensor([action]))
         if mission.done:
             break
+
+
+@pytest.mark.parametrize("sharing", ["shared", "independent"])
+@pytest.mark.parametrize("config", CONFIGS.values(), ids=CONFIGS)
+def test_who_only_watches_sees_what_who_decides_sees(config: NetworkConfig, sharing: str) -> None:
+    network, batch = network_of(config, sharing), ScenarioBatch.of(draw(3))
+    tasks, moments = Tasks.of_batch(batch), Moments.of_batch(BatchMission(batch))
+    seen = network.features(network.surroundings(tasks), moments)  # type: ignore[operator]
+    expected = network.features(network.encode(tasks), moments)  # type: ignore[operator]
+    assert (seen is None) == (config.decoder == "attention")
+    if seen is not None:
+        for each in fields(seen):
+            assert torch.equal(getattr(seen, each.name), getattr(expected, each.name))
 
 
 def test_the_encoder_runs_once_a_mission() -> None:

@@ -19,6 +19,7 @@ from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.capam.inputs import Tasks
 from mrta_zoo.policies.rollout import Segment, roll_out
 from mrta_zoo.policies.sharing import Network, build_network
+from mrta_zoo.policies.temperature import tempered
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.train import graphed_rollout
 from mrta_zoo.train.cuda_graph import tensors
@@ -69,8 +70,10 @@ def easy(tasks: int, seed: int) -> Scenario:
     return Scenario(rng.uniform(0, 100, (tasks, 2)), np.full(tasks, 1e5), rng.uniform(1, 9, tasks), [[50, 50]], [1])  # type: ignore[arg-type]
 
 
-def graphed(network: Network, device: torch.device = CPU, samples: int = SAMPLES) -> GraphedRollout:
-    return GraphedRollout(network, samples, "feasible", "float32", device)
+def graphed(
+    network: Network, device: torch.device = CPU, samples: int = SAMPLES, temperature: float = 1.0
+) -> GraphedRollout:
+    return GraphedRollout(network, samples, "feasible", "float32", device, temperature)
 
 
 def decisions(segments: list[Segment]) -> dict[tuple[int, int], list[tuple[float, int, int]]]:
@@ -88,10 +91,11 @@ def decisions(segments: list[Segment]) -> dict[tuple[int, int], list[tuple[float
     return found
 
 
+@pytest.mark.parametrize("temperature", [1.0, 0.3])
 @pytest.mark.parametrize("config", [ATTENTION, CANDIDATES], ids=["attention", "candidates"])
-def test_sampled_missions_are_those_of_roll_out(config: NetworkConfig) -> None:
+def test_sampled_missions_are_those_of_roll_out(config: NetworkConfig, temperature: float) -> None:
     network = build_network(config, "shared", 1, seed=0)
-    rollouts = graphed(network)
+    policy, rollouts = tempered(network, temperature), graphed(network, temperature=temperature)
     # Missions of one scenario, or of as many decisions in each: none is dropped on the way, so the draws are the same.
     for scenarios in (
         [small_scenario(3, tasks=20, latest=300.0)],
@@ -100,7 +104,7 @@ def test_sampled_missions_are_those_of_roll_out(config: NetworkConfig) -> None:
     ):
         batch = ScenarioBatch.of(scenarios, max_robots=3)
         sampling = torch.Generator().manual_seed(5)
-        wanted = roll_out(network, batch, samples=SAMPLES, generator=sampling, keep_segments=True)
+        wanted = roll_out(policy, batch, samples=SAMPLES, generator=sampling, keep_segments=True)
         got = rollouts.sample(batch, seed=5)
         assert torch.equal(got.cost, wanted.cost)
         assert torch.equal(got.completed, wanted.completed)

@@ -20,6 +20,7 @@ from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
 from mrta_zoo.policies.rollout import roll_out
 from mrta_zoo.policies.sharing import build_network
+from mrta_zoo.train import reinforce
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.gradients import accumulate_gradients
 from mrta_zoo.train.reinforce import Reinforce, Validation
@@ -172,17 +173,47 @@ def test_a_generator_that_draws_no_scenario_is_refused() -> None:
             use()
 
 
-class Detour:
-    """One robot, two tasks: near (10 away) and far (20 away, the other side); work takes no time.
+def test_without_temperature_samples_are_all_the_same_and_nothing_is_learned() -> None:
+    """Near 0 all samples of a scenario are its greedy mission: none is better than the mean of the others."""
+    cold, warm = (Reinforce(replace(TINY, temperature=temperature, normalise=False)) for temperature in (1e-6, 1.0))
+    assert cold.step().gradient_norm == 0
+    assert warm.step().gradient_norm > 0
 
-    The far one is due at 20, the near one at 50. Far first: done at 20 and 20 + 30 = 50, both in time.
-    Near first: 10, then 10 + 30 = 40 > 20, too late. So the far task must come first; nearest completes half.
+
+def test_the_policy_that_samples_is_the_one_that_learns(monkeypatch: pytest.MonkeyPatch) -> None:
+    policies = []
+
+    def noted(function: Callable[..., Any]) -> Callable[..., Any]:
+        def call(policy: Any, *arguments: Any, **options: Any) -> Any:
+            policies.append(policy)
+            return function(policy, *arguments, **options)
+
+        return call
+
+    for name in ("roll_out", "accumulate_gradients"):
+        monkeypatch.setattr(reinforce, name, noted(getattr(reinforce, name)))
+    run = Reinforce(replace(TINY, temperature=0.5))
+    run.step()
+    sampling, learning = policies
+    assert sampling is learning
+    assert sampling is not run.network
+
+
+class FirstThingsFirst:
+    """One robot, two tasks: near (10 away) and far (20 away, the other side); work takes no time. What is due first
+    must come first, which is either with probability 1/2, so that going by places alone completes 3/4 on average.
+
+    The far one due at 20, the near one at 50. Far first: done at 20 and 20 + 30 = 50, both in time. Near first: 10,
+    then 10 + 30 = 40 > 20, too late: half.
+    The near one due at 10, the far one at 40. Near first: done at 10 and 10 + 30 = 40, both in time. Far first: 20,
+    then 20 + 30 = 50 > 10, too late: half.
     """
 
-    def __call__(self, rng: np.random.Generator, name: str = "detour") -> Scenario:
+    def __call__(self, rng: np.random.Generator, name: str = "first things first") -> Scenario:
         angle = rng.uniform(0, 2 * np.pi)
         step = np.array([np.cos(angle), np.sin(angle)])
-        places, due = np.array([50 + 10 * step, 50 - 20 * step]), np.array([50.001, 20.001])
+        due = np.array([50.001, 20.001] if rng.random() < 0.5 else [10.001, 40.001])
+        places = np.array([50 + 10 * step, 50 - 20 * step])
         order = rng.permutation(2)
         return Scenario(places[order], due[order], np.zeros(2), [[50, 50]], [1.0], name=name)
 
@@ -193,7 +224,7 @@ class Detour:
         {},
         {"baseline": "rollout", "samples": 1, "scenarios": 64},
         {"sharing": "independent"},
-        {"network": NetworkConfig(encoder="attention", embedding=32, heads=4, layers=2)},
+        {"network": NetworkConfig(encoder="attention", embedding=32, heads=4, layers=2), "seed": 2},
         {
             "network": NetworkConfig(embedding=32, heads=4, decoder="candidates", decision_layers=2),
             "scenarios": 8,
@@ -202,14 +233,25 @@ class Detour:
             "learning_rate": 1e-2,
         },
         {"objective": "cost", "entropy": 0.01},
+        {"objective": "relative", "temperature": 0.5},
     ],
-    ids=["capam", "rollout-baseline", "independent", "am", "candidates", "cost-and-entropy"],
+    ids=[
+        "capam",
+        "rollout-baseline",
+        "independent",
+        "am",
+        "candidates",
+        "cost-and-entropy",
+        "relative-and-temperature",
+    ],
 )
-def test_learns_to_pass_the_near_task_by(change: dict[str, object]) -> None:
-    config = replace(TINY, max_robots=1, scenarios=16, updates=60, epoch=60, learning_rate=3e-3, clip_norm=10.0)
-    run = Reinforce(replace(config, **change), generator=Detour())  # type: ignore[arg-type]
-    *_, last = run.run()
+def test_learns_to_do_first_what_is_due_first(change: dict[str, object]) -> None:
+    config = replace(TINY, max_robots=1, scenarios=16, updates=20, epoch=60, learning_rate=3e-3, clip_norm=10.0)
+    run = Reinforce(replace(config, **change), generator=FirstThingsFirst())  # type: ignore[arg-type]
+    first, *_, last = run.run()
+    assert isinstance(first, Validation)
     assert isinstance(last, Validation)
+    assert first.completion < 0.9
     assert last.completion > 0.95
 
 
@@ -228,6 +270,7 @@ def test_divergence_is_told_and_changes_no_weights() -> None:
         ({"updates": 0}, "updates is 0; expected a whole number >= 1"),
         ({"learning_rate": 0.0}, "learning_rate is 0.0; expected a number > 0"),
         ({"learning_rate": float("nan")}, "learning_rate is nan; expected a number > 0"),
+        ({"temperature": 0.0}, "temperature is 0.0; expected a number > 0"),
         ({"max_robots": 0}, "max_robots is 0; expected at least min_robots, 1"),
         ({"samples": 1}, "samples is 1, expected >= 2"),
         ({"baseline": "critic"}, "baseline is 'critic'; expected one of samples, rollout"),
