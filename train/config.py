@@ -62,8 +62,9 @@ class TrainConfig:
         normalise: whether advantages are divided by their standard deviation over the batch.
         entropy: weight of an entropy bonus, per decision, at the start; falls to nothing along the same cosine. Without
             it the policy is soon all but certain of what it does, and tries nothing else.
-        temperature: REINFORCE samples from the probabilities p^(1/temperature), normalised, and improves these. Below 1
-            it begins, after imitation, close to what the policy likes best, not with what imitation left open.
+        temperature: REINFORCE samples from the probabilities p^(1/temperature), normalised, and improves these; from
+            1e-6 to 1e6. Below 1 it begins, after imitation, close to what the policy likes best, not with all that
+            imitation left open.
         epoch: updates between two validations, each with a checkpoint, and with the baseline's t-test.
         validation_scenarios: number of validation scenarios, drawn once from the training distribution.
         significance: level of the baseline's t-test.
@@ -146,9 +147,11 @@ class TrainConfig:
             raise ConfigError(
                 f"imitation_plans is {self.imitation_plans}; expected at least imitation_batch, {self.imitation_batch}"
             )
-        for name in ("learning_rate", "imitation_learning_rate", "final_learning_rate", "clip_norm", "temperature"):
+        for name in ("learning_rate", "imitation_learning_rate", "final_learning_rate", "clip_norm"):
             if not 0 < getattr(self, name) < math.inf:
                 raise ConfigError(f"{name} is {getattr(self, name)}; expected a number > 0")
+        if not 1e-6 <= self.temperature <= 1e6:  # what float32 can bear
+            raise ConfigError(f"temperature is {self.temperature}; expected a number from 1e-6 to 1e6, such as 0.5")
         if self.max_robots < self.min_robots:
             raise ConfigError(f"max_robots is {self.max_robots}; expected at least min_robots, {self.min_robots}")
         if self.validation_scenarios < 2:
