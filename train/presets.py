@@ -82,7 +82,7 @@ PRESETS: dict[str, TrainConfig] = {
     "capam-p1": replace(PAPER_NETWORK, network=NetworkConfig(moments=1)),
     "capam-p2": replace(PAPER_NETWORK, network=NetworkConfig(moments=2)),
     "am": replace(PAPER_NETWORK, network=NetworkConfig(encoder="attention", layers=3)),
-    # Less than a minute on one CPU thread: to see that everything works.
+    # A minute or so on one CPU thread: to see that everything works.
     "smoke": TrainConfig(
         network=NetworkConfig(embedding=64),
         tasks=(40,),
