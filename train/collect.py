@@ -36,6 +36,7 @@ def collect(folder: Path) -> None:
         about = json.loads(str(arrays.pop("about")))
         history = [Validation(**each) for each in about["history"]]
         config = read_config(about_run)
+        to_the_end = [Validation(**each) for each in json.loads(about_run.read_text()).get("history", [])]
     except FileNotFoundError as error:
         raise ConfigError(f"{error.filename}: no such file; expected what mrta_zoo.train.bare leaves") from None
     except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
@@ -54,4 +55,5 @@ def collect(folder: Path) -> None:
         "validation_cost": history[-1].cost,
     }
     save_policy(folder / "policy.safetensors", network, info_of(config, trained))
-    write_records(history, folder / "history.csv")
+    # The weights are the best ones, and know what was before them; the run may have gone on.
+    write_records(max(history, to_the_end, key=len), folder / "history.csv")

@@ -12,7 +12,7 @@ FAST = TrainConfig(
     generator="mixture",
     scenarios=12,
     samples=8,
-    updates=6000,
+    updates=2800,
     epoch=50,
     learning_rate=5e-4,
     final_learning_rate=2e-5,
@@ -29,18 +29,20 @@ BROAD = TrainConfig(
     seed=7,
 )
 
-# The paper's networks with the same budget each: 18,432 plans seen in imitation, then 34,560 episodes.
+# The paper's networks with the same budget each: 256,000 plans seen in imitation, then 1,024,000 episodes.
 PAPER_NETWORK = replace(
     BROAD,
-    imitation_updates=288,
-    imitation_batch=64,
+    imitation_updates=1000,
+    imitation_batch=256,
     imitation_decisions=32,
     objective="relative",
-    scenarios=12,
-    updates=360,
-    epoch=72,
-    learning_rate=5e-5,
-    final_learning_rate=5e-6,
+    scenarios=128,
+    samples=16,
+    updates=500,
+    epoch=100,
+    validation_scenarios=256,
+    learning_rate=2e-4,
+    final_learning_rate=1e-5,
     temperature=0.5,
 )
 
