@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -108,7 +109,8 @@ def solve_command(argv: Sequence[str]) -> None:
         check_destination(command.plot)
         check_picture_format(command.plot)
     outputs = {"--out": command.out, "--plot": command.plot}
-    check_distinct(outputs, {"the task file": command.taskfile, "the agent file": agent_file(command)})
+    read = {"the task file": command.taskfile, "the agent file": agent_file(command)}
+    check_distinct(outputs, {**read, **policy_files(command.method)})
     scenario = read_scenario(command.taskfile, command.agents)
     with preparing():
         solver = command.planning.solver(command.method)
@@ -131,6 +133,14 @@ def solve_command(argv: Sequence[str]) -> None:
     for path, what in ((command.out, "plan"), (command.plot, "picture")):
         if path:
             console.print(f"{what} written to {path}", soft_wrap=True)
+
+
+def policy_files(method: str) -> dict[str, Path]:
+    """The files that a method is read from, if it is a policy of the user's; by what they are."""
+    place = Path(method.removesuffix(POLISH))
+    if place.suffix != ".safetensors":
+        place /= "policy.safetensors"
+    return {f"the weights of {method}": place, f"what belongs to the weights of {method}": place.with_suffix(".json")}
 
 
 def agent_file(command: Solve) -> Path | None:
@@ -192,10 +202,15 @@ def eval_command(argv: Sequence[str]) -> None:
         MrtaError: if an option cannot be used, a file cannot be read or written, or a method fails.
     """
     command = parse(Eval, argv, "eval")
+    methods = names(command.methods)
     if command.out:
         check_destination(command.out)
+        inputs = {f"{path} of the cases": path for path in _files_of(command.cases)}
+        for method in methods:
+            inputs |= policy_files(method)
+        check_distinct({"--out": command.out}, inputs)
     with preparing():
-        solvers = {method: command.planning.solver(method) for method in names(command.methods)}
+        solvers = {method: command.planning.solver(method) for method in methods}
     cases = builtin_cases() if command.cases == BUILTIN else read_cases(command.cases)
     with cpu_threads(command.planning.threads):
         rows = run_with_progress(cases, solvers)
@@ -207,6 +222,10 @@ def eval_command(argv: Sequence[str]) -> None:
         console.print(table)
     if command.out:
         console.print(f"{len(rows)} rows written to {command.out}", soft_wrap=True)
+
+
+def _files_of(cases: str) -> list[Path]:
+    return list(Path(cases).rglob("*")) if cases != BUILTIN and os.path.isdir(cases) else []
 
 
 def builtin_cases() -> list[Case]:

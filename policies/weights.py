@@ -72,14 +72,33 @@ def load_weights(path: Path) -> tuple[Network, PolicyInfo]:
     """
     path = Path(path)
     info = read_json(path.with_suffix(".json"), PolicyInfo)
-    tensors = read_tensors(path)
-    if info.sharing == "independent":  # before as many networks are made as the JSON says
+    return build_with(read_tensors(path), info, path).eval(), info
+
+
+def build_with(tensors: dict[str, torch.Tensor], info: PolicyInfo, path: Path) -> Network:
+    """The network that `info` describes, with these weights; nothing large is made before they fit.
+
+    Args:
+        tensors: the weights.
+        info: what they should belong to.
+        path: where they are from, for messages.
+
+    Raises:
+        ConfigError: if the weights don't fit the architecture.
+    """
+    if info.sharing == "independent":  # before as many networks are made as it says
         there = len({name.split(".")[1] for name in tensors if name.startswith("robots.")})
         if there != info.robots:
             raise ConfigError(f"{path}: holds networks of {there} robots; its JSON says that robots is {info.robots}")
-    network = build_network(info.network, info.sharing, info.robots, seed=0, kinds=info.kinds)
-    load_state(network, tensors, path)
-    return network.eval(), info
+
+    def build() -> Network:
+        return build_network(info.network, info.sharing, info.robots, seed=0, kinds=info.kinds)
+
+    with torch.device("meta"):
+        _check_fit(build().state_dict(), tensors, path)
+    network = build()
+    network.load_state_dict(tensors)
+    return network
 
 
 def write_tensors(path: Path, tensors: dict[str, torch.Tensor]) -> None:
@@ -143,7 +162,11 @@ def load_state(network: Network, tensors: dict[str, torch.Tensor], path: Path) -
     Raises:
         ConfigError: if a tensor is missing, left over, of another shape, not of floating point, or not finite.
     """
-    expected = network.state_dict()
+    _check_fit(network.state_dict(), tensors, path)
+    network.load_state_dict(tensors)
+
+
+def _check_fit(expected: dict[str, torch.Tensor], tensors: dict[str, torch.Tensor], path: Path) -> None:
     for name, tensor in expected.items():
         if name not in tensors:
             raise ConfigError(
@@ -163,4 +186,3 @@ def load_state(network: Network, tensors: dict[str, torch.Tensor], path: Path) -
     for name in tensors:
         if name not in expected:
             raise ConfigError(f"{path}: tensor {name!r} has no place in the architecture")
-    network.load_state_dict(tensors)

@@ -246,6 +246,10 @@ def test_generate_takes_bounds(tmp_path: Path) -> None:
         (["eval", "--cases", "builtin", "--methods", ","], "expected names separated by commas"),
         (["eval", "--cases", "builtin", "--methods", "edf,edf"], "edf is named twice"),
         (["eval", "--cases", "builtin", "--methods", "edf", "--out", "CASE/rows.csv"], "is not a folder"),
+        (
+            ["eval", "--cases", "DATA", "--methods", "nearest", "--out", "CASE"],
+            "of the cases; expected a file of its own",
+        ),
         (["generate", "--out", "DATA"], "is not empty"),
         (["generate", "--out", "new", "--count", "0"], "count is 0"),
         (["generate", "--out", "new", "--seed", "-3"], "seed is -3"),
@@ -275,6 +279,19 @@ def test_mistakes_get_a_sentence(
     ]
     assert complaint in fails(capsys, written)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["EMPTY", "HOLLOW"]
+
+
+@pytest.mark.parametrize("command", ["solve", "eval"])
+@pytest.mark.parametrize("suffix", ["safetensors", "json"])
+def test_no_policy_is_written_over(command: str, suffix: str, cases: Path, tmp_path: Path, capsys: Captured) -> None:
+    for ending in ("safetensors", "json"):
+        (tmp_path / f"policy.{ending}").write_text("precious")
+    target = tmp_path / f"policy.{suffix}"
+    for policy in (str(tmp_path), str(tmp_path / "policy.safetensors"), f"{tmp_path}+polish"):
+        task_file = str(next((cases / "group1").glob("*.txt")))
+        what = [task_file, "--method", policy] if command == "solve" else ["--cases", str(cases), "--methods", policy]
+        assert "weights of" in fails(capsys, [command, *what, "--out", str(target)])
+    assert target.read_text() == "precious"
 
 
 @pytest.mark.parametrize(

@@ -13,11 +13,14 @@ It leaves the best weights by validation in ``bare.npz``, what it needs to go on
 from __future__ import annotations
 
 import argparse
+import io
 import json
 import math
 import os
+import sys
 import time
-from dataclasses import asdict, replace
+import zipfile
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +32,9 @@ from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.experts import read_plans
 from mrta_zoo.train.reinforce import Reinforce, RunOptions, Update, Validation
+
+MAY_CHANGE = ("updates", "epoch")
+"""What a run may be resumed with other values of."""
 
 
 def train(
@@ -54,59 +60,76 @@ def train(
         resume: go on from OUT.last.npz.
 
     Raises:
-        ConfigError: if there is imitation to be done and no plans, or the baseline is not "samples".
+        ConfigError: if there is imitation to be done and no plans, the baseline is not "samples", there is no folder
+            for `out`, or what is to be resumed is missing, damaged, or of another run.
     """
     if config.baseline != "samples":
         raise ConfigError(f"baseline is {config.baseline!r}, which needs SciPy; expected samples")
-    begun = time.perf_counter()
+    if not out.parent.is_dir():
+        raise ConfigError(f"{out.parent} is no folder; expected one for {out.name}.npz and the other files")
+    begun, asked = time.perf_counter(), config
     run = Reinforce(config, options=RunOptions(workers, compiled))
     spent = _resume(out, run) if resume else 0.0
+    config = run.config
     if run.update < config.imitation_updates:
         if plans is None:
             raise ConfigError("there is imitation to be done; name a folder of plans (--plans)")
         known = read_plans(config, plans, config.imitation_plans, workers)
+        if not known:
+            raise ConfigError(f"{plans} holds no plans; expected {config.imitation_plans:,} of them")
         if len(known) < config.imitation_plans:
             print(f"{out.name}: {plans} holds {len(known):,} plans, not {config.imitation_plans:,}", flush=True)
             run.config = config = replace(config, imitation_plans=len(known))
         run.set_plans(known)
     print(f"{out.name}: ready after {time.perf_counter() - begun:.1f} s on {run.device}", flush=True)
-    last = saved = session = time.perf_counter()
+    last = session = time.perf_counter()
+    saved = -math.inf
     first_reinforce = None
     start = max(run.update, config.imitation_updates)
     updates: list[Update] = []
-    for event in run.run():
-        now = time.perf_counter()
-        if isinstance(event, Update):
-            updates.append(event)
-            into = event.update - start
-            if fit and into == 15:
-                first_reinforce = now
-            if fit and into == 75 and first_reinforce is not None:
-                left = seconds - (now - begun) - 12
-                more = int(left / ((now - first_reinforce) / 60 * 1.08))
-                run.config = config = replace(config, updates=start - config.imitation_updates + into + max(more, 1))
-                print(f"{out.name}: {config.updates} updates of REINFORCE", flush=True)
-        else:
-            mean = sum(update.loss for update in updates) / max(1, len(updates))
-            print(
-                f"{out.name} update {event.update} episodes {event.episodes:,} loss {mean:.4f} validation "
-                f"{100 * event.completion:.2f} % cost {event.cost:.4f} {now - begun:.0f} s "
-                f"({(now - last) / max(1, len(updates)):.3f} s/update)",
-                flush=True,
-            )
-            updates, last = [], now
-            if event is run.best:
-                _write(out, run, spent + now - session)
-            if now - saved > 60:
-                saved = now
-                _save(out, run, spent + now - session)
-        if now - begun > seconds:
-            break
+    try:
+        for event in run.run():
+            now = time.perf_counter()
+            if isinstance(event, Update):
+                updates.append(event)
+                into = event.update - start
+                if fit and into == 15:
+                    first_reinforce = now
+                if fit and into == 75 and first_reinforce is not None:
+                    left = seconds - (now - begun) - 12
+                    more = int(left / ((now - first_reinforce) / 60 * 1.08))
+                    run.config = config = replace(
+                        config, updates=start - config.imitation_updates + into + max(more, 1)
+                    )
+                    print(f"{out.name}: {config.updates} updates of REINFORCE", flush=True)
+            else:
+                mean = sum(update.loss for update in updates) / max(1, len(updates))
+                print(
+                    f"{out.name} update {event.update} episodes {event.episodes:,} loss {mean:.4f} validation "
+                    f"{100 * event.completion:.2f} % cost {event.cost:.4f} {now - begun:.0f} s "
+                    f"({(now - last) / max(1, len(updates)):.3f} s/update)",
+                    flush=True,
+                )
+                updates, last = [], now
+                if event is run.best:
+                    _write(out, run, asked, spent + now - session)
+                if now - saved > 60:
+                    saved = now
+                    _save(out, run, asked, spent + now - session)
+            if now - begun > seconds:
+                break
+    except KeyboardInterrupt:
+        print(
+            f"{out.name} is interrupted; go on with --resume, from a minute ago at most or the last validation before",
+            flush=True,
+        )
+        run.close()
+        raise
     if run.history[-1].update != run.update:
         run.validate()
         if run.history[-1] is run.best:
-            _write(out, run, spent + time.perf_counter() - session)
-    _save(out, run, spent + time.perf_counter() - session)
+            _write(out, run, asked, spent + time.perf_counter() - session)
+    _save(out, run, asked, spent + time.perf_counter() - session)
     print(
         f"{out.name} ends after update {run.update} at {100 * run.history[-1].completion:.2f} %, best "
         f"{100 * run.best.completion:.2f} %",
@@ -123,13 +146,16 @@ def read_config(path: Path) -> TrainConfig:
     """
     try:
         values: dict[str, Any] = json.loads(path.read_text())
-        values = values.get("config", values)  # the history that `train` leaves holds it, too
-        network = NetworkConfig(**_with_tuples(values.pop("network", {})))
-        return TrainConfig(network=network, **_with_tuples(values))
+        return _config_of(values.get("config", values))  # the history that `train` leaves holds it, too
     except ConfigError:
         raise
     except (OSError, ValueError, TypeError, AttributeError) as error:
         raise ConfigError(f"{path}: not a configuration ({error})") from None
+
+
+def _config_of(values: dict[str, Any]) -> TrainConfig:
+    rest = {name: value for name, value in values.items() if name != "network"}
+    return TrainConfig(network=NetworkConfig(**_with_tuples(values.get("network", {}))), **_with_tuples(rest))
 
 
 def _with_tuples(values: dict[str, Any]) -> dict[str, Any]:
@@ -137,51 +163,89 @@ def _with_tuples(values: dict[str, Any]) -> dict[str, Any]:
     return {name: tuple(value) if isinstance(value, list) else value for name, value in values.items()}
 
 
-def _write(out: Path, run: Reinforce, seconds: float) -> None:
-    _store(out.with_name(out.name + ".npz"), run, seconds, _arrays(dict(run.network.state_dict())))
+def _write(out: Path, run: Reinforce, asked: TrainConfig, seconds: float) -> None:
+    _store(out.with_name(out.name + ".npz"), run, asked, seconds, _arrays(dict(run.network.state_dict())))
+    _write_history(out, run)
 
 
-def _save(out: Path, run: Reinforce, seconds: float) -> None:
+def _save(out: Path, run: Reinforce, asked: TrainConfig, seconds: float) -> None:
     arrays = _arrays(dict(run.network.state_dict()))
     for name, parameter in run.network.named_parameters():
         for key, value in run.optimizer.state.get(parameter, {}).items():
             arrays[f"adam/{name}/{key}"] = value.detach().cpu().numpy()
-    _store(out.with_name(out.name + ".last.npz"), run, seconds, arrays)
-    history = [asdict(each) for each in run.history]
-    out.with_name(out.name + ".json").write_text(json.dumps({"config": asdict(run.config), "history": history}))
+    _store(out.with_name(out.name + ".last.npz"), run, asked, seconds, arrays)
+    _write_history(out, run)
+
+
+def _write_history(out: Path, run: Reinforce) -> None:
+    path = out.with_name(out.name + ".json")
+    partial = path.with_name(path.name + ".partial")
+    partial.write_text(json.dumps({"config": asdict(run.config), "history": [asdict(each) for each in run.history]}))
+    os.replace(partial, path)
 
 
 def _arrays(tensors: dict[str, torch.Tensor]) -> dict[str, Any]:
     return {name: value.detach().cpu().numpy() for name, value in tensors.items()}
 
 
-def _store(path: Path, run: Reinforce, seconds: float, arrays: dict[str, Any]) -> None:
+def _store(path: Path, run: Reinforce, asked: TrainConfig, seconds: float, arrays: dict[str, Any]) -> None:
     about = {
         "update": run.update, "seconds": round(seconds, 1), "torch": str(torch.__version__),
         "device": torch.cuda.get_device_name() if run.device.type == "cuda" else "cpu",
         "threads": torch.get_num_threads(), "history": [asdict(each) for each in run.history],
+        "config": asdict(asked), "updates": run.config.updates,
     }  # fmt: skip
     partial = path.with_name(path.name + ".partial.npz")
-    np.savez(partial, about=np.array(json.dumps(about)), **arrays)
-    os.replace(partial, path)
+    try:
+        np.savez(partial, about=np.array(json.dumps(about)), **arrays)
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
 
 
 def _resume(out: Path, run: Reinforce) -> float:
-    with np.load(out.with_name(out.name + ".last.npz"), allow_pickle=False) as file:
-        arrays = {name: file[name] for name in file.files}
-    about = json.loads(str(arrays.pop("about")))
-    state = {name: torch.from_numpy(array) for name, array in arrays.items() if not name.startswith("adam/")}
-    run.network.load_state_dict(state)
-    for name, parameter in run.network.named_parameters():
-        keys = [key for key in ("step", "exp_avg", "exp_avg_sq") if f"adam/{name}/{key}" in arrays]
-        if keys:
-            moments = {key: torch.from_numpy(arrays[f"adam/{name}/{key}"]) for key in keys}
-            run.optimizer.state[parameter] = {
-                key: value if key == "step" else value.to(parameter.device) for key, value in moments.items()
-            }
-    run.update = about["update"]
-    run.history = [Validation(**each) for each in about["history"]]
-    return float(about["seconds"])
+    """Put the run where it was; the seconds spent on it before.
+
+    Raises:
+        ConfigError: if there is nothing to go on with, it is damaged, or it belongs to another run: of what was asked
+            for only `MAY_CHANGE` may have changed since.
+    """
+    path = out.with_name(out.name + ".last.npz")
+    try:
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        about = json.loads(str(arrays.pop("about")))
+        asked, now = _config_of(about["config"]), run.config
+        changed = [each.name for each in fields(now) if getattr(asked, each.name) != getattr(now, each.name)]
+        if different := [name for name in changed if name not in MAY_CHANGE]:
+            raise ConfigError(
+                f"{path} is of another run: {different[0]} was {getattr(asked, different[0])!r}, now it is "
+                f"{getattr(now, different[0])!r}"
+            )
+        if now.updates == asked.updates:  # what --fit has made of it counts
+            run.config = replace(now, updates=about["updates"])
+        state = {name: torch.from_numpy(array) for name, array in arrays.items() if not name.startswith("adam/")}
+        run.network.load_state_dict(state)
+        for name, parameter in run.network.named_parameters():
+            keys = [key for key in ("step", "exp_avg", "exp_avg_sq") if f"adam/{name}/{key}" in arrays]
+            if keys:
+                moments = {key: torch.from_numpy(arrays[f"adam/{name}/{key}"]) for key in keys}
+                run.optimizer.state[parameter] = {
+                    key: value if key == "step" else value.to(parameter.device) for key, value in moments.items()
+                }
+        run.update, run.history = int(about["update"]), [Validation(**each) for each in about["history"]]
+        seconds = float(about["seconds"])
+    except FileNotFoundError:
+        raise ConfigError(f"{path}: no such file; there is nothing to go on with") from None
+    except ConfigError:
+        raise
+    except (OSError, ValueError, KeyError, TypeError, RuntimeError, EOFError, zipfile.BadZipFile) as error:
+        raise ConfigError(f"{path}: not what a run leaves to go on with ({type(error).__name__})") from None
+    if not 0 <= run.update <= run.config.total_updates or not run.history:
+        raise ConfigError(
+            f"{path}: update is {run.update}; expected at most {run.config.total_updates}, validated before"
+        )
+    return seconds
 
 
 def main() -> None:
@@ -197,9 +261,17 @@ def main() -> None:
     parser.add_argument("--resume", action="store_true", help="go on from OUT.last.npz")
     parser.add_argument("--threads", type=int, default=1, help="CPU threads of torch; 0 leaves the choice to it")
     a = parser.parse_args()
+    if a.workers < 0 or a.threads < 0 or not a.seconds > 0:
+        parser.error("--workers and --threads are whole numbers >= 0, --seconds a number > 0")
     if a.threads:
         torch.set_num_threads(a.threads)
-    train(read_config(a.config), a.out, a.plans, a.workers, a.seconds, a.compiled, a.fit, a.resume)
+    try:
+        train(read_config(a.config), a.out, a.plans, a.workers, a.seconds, a.compiled, a.fit, a.resume)
+    except ConfigError as error:
+        print(f"error: {error}", file=sys.stderr)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        sys.exit(130)
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 from mrta_zoo.bounds import MAX_THREADS, check_threads
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.train import checkpoint
-from mrta_zoo.train.collect import collect
+from mrta_zoo.train.collect import BARE, collect
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.plans import make_plans
 from mrta_zoo.train.presets import PRESETS
@@ -40,9 +40,9 @@ class TrainCommand:
     """
 
     preset: str = "fast"
-    """Where the other flags' defaults come from: capam-plus (the shipped policy, for a GPU), capam, am, capam-p1,
-    capam-p2 (the paper's networks as shipped), paper (Table I of the paper, for a GPU), fast (the paper's network with
-    nothing to imitate; an hour or so on one CPU thread), smoke (less than a minute)."""
+    """Where the other flags' defaults come from: capam-plus (the shipped policy), capam, am, capam-p1, capam-p2 (the
+    paper's networks as shipped; all five for a GPU), paper (Table I of the paper, for a GPU), fast (the paper's network
+    with nothing to imitate; half an hour or so on one CPU thread), smoke (a minute or so)."""
     out: Path
     """Folder of the run."""
     resume: bool = False
@@ -57,9 +57,8 @@ class TrainCommand:
     compiled: bool = False
     """Compile the decoder's layers: a minute at first, for quicker steps on a GPU."""
     threads: int = 1
-    """CPU threads; 0 leaves the choice to torch. On a quiet machine two train faster than one: 505 rather than 363
-    episodes a second with fast, 1795 rather than 1520 with smoke. On a busy one they can be far slower. Results are the
-    same only for the same number."""
+    """CPU threads; 0 leaves the choice to torch. On a quiet machine two can train faster than one, on a busy one they
+    can be far slower. Results are the same only for the same number."""
     config: Annotated[TrainConfig, tyro.conf.arg(name="")] = field(default_factory=TrainConfig)
 
 
@@ -76,10 +75,17 @@ def train_command(argv: Sequence[str]) -> None:
     if not 1 <= command.workers <= MAX_THREADS:
         raise ConfigError(f"workers is {command.workers}; expected a whole number from 1 to {MAX_THREADS}")
     if command.collect:
+        if command.resume or command.prepare:
+            raise ConfigError("--collect only takes over what is there; expected it without --resume and --prepare")
         collect(command.out)
         return
     options = RunOptions(workers=command.workers, compiled=command.compiled)
     if command.resume:
+        if (command.out / f"{BARE}.npz").exists():
+            raise ConfigError(
+                f"{command.out} holds a run of mrta_zoo.train.bare, which goes on there (--resume); to train on from "
+                f"its policy, begin a new run: --initial {command.out}, another --out, and no --resume"
+            )
         run, seconds = checkpoint.resume(command.out, options)
         changed = [
             f.name for f in fields(TrainConfig) if getattr(command.config, f.name) != getattr(run.config, f.name)

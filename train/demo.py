@@ -13,7 +13,7 @@ from mrta_zoo.train.reinforce import Validation
 
 
 def short_training(folder: Path, console: Console | None = None) -> list[Validation]:
-    """Train a small CapAM from scratch for less than a minute (preset "smoke"). `folder` must not hold a run yet.
+    """Train a small CapAM from scratch for a minute or so (preset "smoke"). `folder` must not hold a run yet.
 
     Returns:
         The validation history: it rises visibly.

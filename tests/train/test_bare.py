@@ -190,3 +190,81 @@ def test_fits_a_resumed_run_into_the_time_left(
     # 126 - 77 - 12 = 37 left, for int(37 / 1.08) = 34 more; and 4 of REINFORCE had been done before.
     assert "113 updates of REINFORCE" in capsys.readouterr().out
     assert about(tmp_path / "out.last.npz")["update"] == 4 + 113
+
+
+def test_resumed_it_keeps_the_number_of_updates_that_fitted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    config = replace(TINY, imitation_updates=0, updates=1000, epoch=1000)
+    clock = count()
+    monkeypatch.setattr(bare, "time", SimpleNamespace(perf_counter=lambda: next(clock)))
+    monkeypatch.setattr(Reinforce, "_reinforce", lambda run: (0.0, 1))
+    # As above, but for the validation at first: 78 have passed after 75 steps; 126 - 78 - 12 = 36, int(36 / 1.08) = 33.
+    bare.train(config, tmp_path / "out", seconds=126, fit=True)
+    assert about(tmp_path / "out.last.npz")["update"] == 75 + 33
+    bare.train(config, tmp_path / "out", resume=True)
+    assert about(tmp_path / "out.last.npz")["update"] == 75 + 33, "it was at its end"
+
+
+def test_stopped_at_once_it_has_left_everything(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(run: Reinforce) -> None:
+        raise KeyboardInterrupt
+
+    config = replace(TINY, imitation_updates=0)
+    with monkeypatch.context() as patch:
+        patch.setattr(Reinforce, "step", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            bare.train(config, tmp_path / "out")
+    assert {path.name for path in tmp_path.iterdir()} == {"out.npz", "out.last.npz", "out.json"}
+    bare.train(config, tmp_path / "out", resume=True)
+    bare.train(config, tmp_path / "straight")
+    straight, resumed = arrays(tmp_path / "straight.last.npz"), arrays(tmp_path / "out.last.npz")
+    assert all(np.array_equal(straight[name], resumed[name]) for name in straight if name != "about")
+
+
+def test_what_cannot_be_resumed_is_told(tmp_path: Path) -> None:
+    config = replace(TINY, imitation_updates=0, updates=1, epoch=1)
+    last = tmp_path / "out.last.npz"
+    with pytest.raises(ConfigError, match=r"out\.last\.npz: no such file; there is nothing to go on with"):
+        bare.train(config, tmp_path / "out", resume=True)
+    for junk in (b"", b"junk", b"PK\x03\x04"):
+        last.write_bytes(junk)
+        with pytest.raises(ConfigError, match=r"out\.last\.npz: not what a run leaves to go on with"):
+            bare.train(config, tmp_path / "out", resume=True)
+    bare.train(config, tmp_path / "out")
+    with pytest.raises(ConfigError, match="is of another run: seed was 0, now it is 1"):
+        bare.train(replace(config, seed=1), tmp_path / "out", resume=True)
+    kept = arrays(last)
+    for change, sentence in (
+        ({"update": 99}, "update is 99; expected at most 1"),
+        ({"history": []}, "validated before"),
+    ):
+        state = {**about(last), **change}
+        np.savez(last, **{**kept, "about": np.array(json.dumps(state))})
+        with pytest.raises(ConfigError, match=sentence):
+            bare.train(config, tmp_path / "out", resume=True)
+        np.savez(last, **kept)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["nothing.json", "out"], "error: nothing.json: not a configuration"),
+        (["config.json", "nowhere/out"], "error: nowhere is no folder"),
+        (["config.json", "out", "--plans", "nowhere"], "error: nowhere holds no plans; expected 12 of them"),
+        (["config.json", "out", "--seconds", "nan"], "--seconds a number > 0"),
+        (["config.json", "out", "--workers", "-1"], "--workers and --threads are whole numbers >= 0"),
+    ],
+)
+def test_its_command_ends_with_a_sentence(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    arguments: list[str],
+    sentence: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("config.json").write_text(json.dumps(asdict(TINY)))
+    monkeypatch.setattr(sys, "argv", ["bare", *arguments])
+    with pytest.raises(SystemExit) as ended:
+        bare.main()
+    assert ended.value.code == 2
+    assert sentence in capsys.readouterr().err

@@ -254,6 +254,7 @@ def test_no_more_networks_are_made_than_there_are(tmp_path: Path) -> None:
     ("change", "sentence"),
     [
         ({"embedding": 64}, r"has shape .*; the architecture needs"),
+        ({"embedding": 4096, "heads": 1, "decoder": "candidates", "decision_layers": 64}, "the architecture needs"),
         ({"moments": 4}, "is missing; the weights belong to another architecture"),
         ({"decoder": "candidates"}, "is missing; the weights belong to another architecture"),
         ({"moments": 2}, "has (no place in the architecture|shape)"),

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from mrta_zoo.errors import ConfigError
@@ -61,6 +64,78 @@ def test_nothing_to_collect_is_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "bare.npz").write_bytes(b"no archive")
     with pytest.raises(ConfigError, match=r"bare\.npz: not what mrta_zoo\.train\.bare leaves"):
         train_command(["--out", str(tmp_path), "--collect"])
+
+
+@pytest.fixture
+def left(tmp_path: Path) -> Path:
+    """A prepared folder and what a bare machine left in it."""
+    folder = tmp_path / "run"
+    train_command([*TINY, "--out", str(folder), "--prepare"])
+    bare.train(bare.read_config(folder / "config.json"), folder / "bare")
+    return folder
+
+
+def edit(path: Path, arrays: dict[str, Any] | None = None, **about: Any) -> None:
+    """Change what is in a file of weights."""
+    with np.load(path) as file:
+        kept = {name: file[name] for name in file.files}
+    state = json.loads(str(kept.pop("about"))) | about
+    np.savez(path, about=np.array(json.dumps(state)), **(kept | (arrays or {})))
+
+
+@pytest.mark.parametrize(
+    ("about", "arrays", "sentence"),
+    [
+        ({"history": []}, {}, "its history ends with updates"),
+        ({"update": 77}, {}, "its history ends with updates"),
+        ({"update": "x"}, {}, "not what"),
+        ({"seconds": float("nan")}, {}, "not what"),
+        ({"torch": None}, {}, "not what"),
+        ({}, {"context": np.array(["text"])}, "context is no array of float32"),
+        ({}, {"context": np.zeros(3, ">f4")}, "context is no array of float32"),
+        ({}, {"context": np.full(3, 1e300)}, "context is no array of float32"),
+        ({}, {"left_over": np.zeros(3, np.float32)}, "'left_over' has no place in the architecture"),
+    ],
+)
+def test_damaged_weights_are_refused_before_anything_is_written(
+    left: Path, about: dict[str, Any], arrays: dict[str, Any], sentence: str
+) -> None:
+    edit(left / "bare.npz", arrays, **about)
+    with pytest.raises(ConfigError, match=sentence):
+        train_command(["--out", str(left), "--collect"])
+    assert not (left / "policy.safetensors").exists()
+
+
+def test_files_of_different_runs_are_refused(left: Path) -> None:
+    whole = (left / "bare.json").read_text()
+    run = json.loads(whole)
+    for change, sentence in (
+        ({"config": run["config"] | {"mask_rule": "unvisited"}}, "mask_rule is 'unvisited'; config.json beside it has"),
+        ({"config": run["config"] | {"max_robots": 2.5}}, r"bare\.json: Expected `int`, got `float`"),
+        ({"history": [run["history"][0] | {"completion": 0.125}]}, "its history is not that of bare.npz"),
+        ({"history": [{"update": "junk"}] * 9}, r"bare\.json: "),
+    ):
+        (left / "bare.json").write_text(json.dumps(run | change))
+        with pytest.raises(ConfigError, match=sentence):
+            train_command(["--out", str(left), "--collect"])
+    (left / "bare.json").write_text("")
+    with pytest.raises(ConfigError, match=r"bare\.json: "):
+        train_command(["--out", str(left), "--collect"])
+    (left / "bare.json").write_text(whole)
+    (left / "bare.npz").write_bytes(b"")
+    with pytest.raises(ConfigError, match=r"bare\.npz: not what mrta_zoo\.train\.bare leaves \(EOFError\)"):
+        train_command(["--out", str(left), "--collect"])
+
+
+def test_a_collected_policy_is_not_trained_over(left: Path) -> None:
+    train_command(["--out", str(left), "--collect"])
+    policy = (left / "policy.safetensors").read_bytes()
+    with pytest.raises(ConfigError, match=r"holds a run of mrta_zoo\.train\.bare, which goes on there"):
+        train_command(["--out", str(left), "--resume"])
+    (left / "checkpoints").mkdir()
+    with pytest.raises(ConfigError, match="has checkpoints of a run of its own"):
+        train_command(["--out", str(left), "--collect"])
+    assert (left / "policy.safetensors").read_bytes() == policy
 
 
 def test_plans_that_are_there_are_not_made_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
