@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import tokenize
 from dataclasses import asdict, dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 
 import msgspec
@@ -57,7 +58,7 @@ def collect(folder: Path) -> None:
     run = read_json(about_run, BareHistory)
     _check_same_run(folder, run.config)
     longer, shorter = sorted((run.history, state.history), key=len, reverse=True)
-    if longer[: len(shorter)] != shorter:
+    if longer[: len(shorter)] != shorter or not _ascending(longer):
         raise ConfigError(f"{about_run}: its history is not that of {weights.name}; do they belong to one run?")
     last = state.history[-1]
     trained = {
@@ -92,9 +93,13 @@ def _read_weights(path: Path) -> tuple[dict[str, np.ndarray], BareState]:
         if not isinstance(array, np.ndarray) or array.dtype != np.float32:
             raise ConfigError(f"{path}: {name} is no array of float32")
     updates = [each.update for each in state.history]
-    if not updates or updates[-1] != state.update or updates != sorted(set(updates)) or updates[0] < 0:
+    if not updates or updates[-1] != state.update or not _ascending(state.history):
         raise ConfigError(f"{path}: its history ends with updates {updates[-3:]}; expected {state.update} at the end")
     return arrays, state
+
+
+def _ascending(history: list[Validation]) -> bool:
+    return all(one.update < other.update for one, other in pairwise(history)) and history[0].update >= 0
 
 
 def _check_same_run(folder: Path, config: TrainConfig) -> None:

@@ -113,6 +113,7 @@ def test_files_of_different_runs_are_refused(left: Path) -> None:
         ({"config": run["config"] | {"mask_rule": "unvisited"}}, "mask_rule is 'unvisited'; config.json beside it has"),
         ({"config": run["config"] | {"max_robots": 2.5}}, r"bare\.json: Expected `int`, got `float`"),
         ({"history": [run["history"][0] | {"completion": 0.125}]}, "its history is not that of bare.npz"),
+        ({"history": run["history"] * 2}, "its history is not that of bare.npz"),
         ({"history": [{"update": "junk"}] * 9}, r"bare\.json: "),
     ):
         (left / "bare.json").write_text(json.dumps(run | change))
