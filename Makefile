@@ -12,7 +12,7 @@ demo: $(INSTALLED)
 	$(BIN)/mrta-zoo demo
 
 test: $(INSTALLED)
-	$(BIN)/python -m pytest -n 2 --dist loadgroup
+	$(BIN)/python -m pytest -n 2 --dist worksteal
 
 # The replay page in headless Chromium, which the system must have; without it these tests are skipped.
 test-browser: $(INSTALLED)

@@ -25,8 +25,6 @@ from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.scenarios import draw
 
-pytestmark = pytest.mark.xdist_group("ablation")  # in one process, which makes what they share once
-
 TINY = shlex.split(
     "--only encoder,moments --updates 2 --paper-updates 4 --scenarios 2 --samples 2 --tasks 6 --held-out 2 --seeds 2"
 )

@@ -20,8 +20,6 @@ from mrta_zoo.eval.reproduce.parts import Picture, Report, Section, Table
 from mrta_zoo.eval.reproduce.report import write_report
 from mrta_zoo.policies.registry import method_names
 
-pytestmark = pytest.mark.xdist_group("reproduce")  # in one process, which makes what they share once
-
 METHODS = "random,nearest,capam"
 TIMED = ("rows.csv", "sessions.csv", "planning_time.csv", "planning_time_table.csv")
 VOID = ("meta", "img")

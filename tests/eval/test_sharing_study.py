@@ -22,8 +22,6 @@ from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.sharing import build_network
 
-pytestmark = pytest.mark.xdist_group("sharing")  # in one process, which makes what they share once
-
 TINY = shlex.split("--updates 2 --scenarios 4 --samples 2 --tasks 6 --held-out 2 --seeds 2 --workers 1")
 
 
