@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import Captured
 from real_cases import REAL, needs_real_cases
 
 from mrta_zoo import __version__
@@ -20,8 +21,6 @@ from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.io import read_cases, read_plan, read_scenario, write_scenario
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
-
-Captured = pytest.CaptureFixture[str]
 
 
 @pytest.fixture(scope="module")

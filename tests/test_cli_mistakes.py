@@ -6,11 +6,10 @@ import os
 from pathlib import Path
 
 import pytest
+from command_line import Captured, fails, refused
 
 from mrta_zoo.cli import COMMANDS, main
 from mrta_zoo.errors import ScenarioError
-
-Captured = pytest.CaptureFixture[str]
 
 
 @pytest.fixture(scope="module")
@@ -19,29 +18,6 @@ def cases(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("data") / "cases"
     assert main(["generate", "--count", "3", "--tasks", "12", "--robots", "2-3", "--out", str(folder)]) == 0
     return folder
-
-
-def fails(capsys: Captured, arguments: list[str]) -> str:
-    """Run a command that ends with code 2 and one line on standard error; that line."""
-    capsys.readouterr()
-    assert main(arguments) == 2
-    output = capsys.readouterr()
-    assert output.out == ""
-    assert output.err.startswith("error: ")
-    assert output.err.count("\n") == 1
-    return output.err
-
-
-def refused(capsys: Captured, arguments: list[str]) -> str:
-    """Run a command whose flags are not understood; what standard error says."""
-    capsys.readouterr()
-    with pytest.raises(SystemExit) as exit_:
-        main(arguments)
-    assert exit_.value.code == 2
-    output = capsys.readouterr()
-    assert output.out == ""
-    assert "Traceback" not in output.err
-    return output.err
 
 
 @pytest.mark.parametrize(

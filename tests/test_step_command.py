@@ -10,9 +10,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from command_line import Captured, fails
 from factories import small_scenario
 from real_cases import REAL, needs_real_cases
-from test_cli import Captured, fails
 
 from mrta_zoo.cli import main
 from mrta_zoo.debug import compare, record

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from test_cli import Captured, fails
+from command_line import Captured, fails
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.sharing.arms import QUESTIONS
