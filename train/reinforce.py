@@ -245,7 +245,7 @@ class Reinforce:
 
         policy, config = load_policy(initial), self.config
         info = policy.info
-        if (info.network, info.sharing) != (config.network, config.sharing):
+        if info.sharing != config.sharing or not info.network.shares_weights(config.network):
             raise ConfigError(
                 f"initial is {initial!r}, which is {info.sharing} {info.network}; "
                 f"the run is {config.sharing} {config.network}"

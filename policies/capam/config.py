@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from mrta_zoo.errors import ConfigError
 
@@ -23,7 +23,8 @@ class NetworkConfig:
         decoder: "attention" for the paper's; "candidates" for CapAM+, which looks at what matters at the time of the
             decision (`mrta_zoo.policies.capam.candidates`).
         decision_layers: number of layers of the "candidates" decoder.
-        candidates: of the tasks that a robot may choose, how many that decoder looks at: the quickest.
+        candidates: of the tasks that a robot may choose, how many that decoder looks at: the quickest. No weights depend
+            on it, nor on `peers`: what was trained with some may decide with more.
         peers: how many of its peers that decoder looks at: the nearest.
         node_features: what the encoder knows of each task, names in `mrta_zoo.policies.capam.node_features`. The
             paper's are x, y and deadline; it allows more, and here come workload and two features that relate
@@ -74,3 +75,7 @@ class NetworkConfig:
             raise ConfigError("node_features is empty; expected at least one feature")
         if not 0 < self.tanh_clip < math.inf:
             raise ConfigError(f"tanh_clip is {self.tanh_clip}; expected a number > 0")
+
+    def shares_weights(self, other: NetworkConfig) -> bool:
+        """Whether the weights of one are those of the other: all but what the decoder looks at is the same."""
+        return replace(self, candidates=other.candidates, peers=other.peers) == other
