@@ -69,7 +69,7 @@ class TrainConfig:
         validation_scenarios: number of validation scenarios, drawn once from the training distribution.
         significance: level of the baseline's t-test.
         initial: start from the weights of this policy (a shipped name, a .safetensors file, or a run's folder) instead
-            of random ones; its architecture must be the same. Empty for random weights.
+            of random ones; its architecture must be the same, `candidates` and `peers` aside. Empty for random weights.
         seed: of everything random.
         keep_checkpoints: how many of the latest checkpoints to keep.
         device: "cpu", "cuda", or "auto" (a GPU if there is one).

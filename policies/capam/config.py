@@ -23,8 +23,8 @@ class NetworkConfig:
         decoder: "attention" for the paper's; "candidates" for CapAM+, which looks at what matters at the time of the
             decision (`mrta_zoo.policies.capam.candidates`).
         decision_layers: number of layers of the "candidates" decoder.
-        candidates: of the tasks that a robot may choose, how many that decoder looks at: the quickest. No weights depend
-            on it, nor on `peers`: what was trained with some may decide with more.
+        candidates: of the tasks that a robot may choose, how many that decoder looks at: the quickest. The shapes of
+            weights depend neither on this nor on `peers`: what was trained with some may decide with more.
         peers: how many of its peers that decoder looks at: the nearest.
         node_features: what the encoder knows of each task, names in `mrta_zoo.policies.capam.node_features`. The
             paper's are x, y and deadline; it allows more, and here come workload and two features that relate

@@ -122,6 +122,20 @@ def test_a_run_may_start_from_another_and_resume_without_it(tmp_path: Path) -> N
         Reinforce(replace(TINY, initial=str(tmp_path / "elsewhere"), network=NetworkConfig()))
 
 
+def test_a_run_may_start_from_weights_that_looked_at_fewer_tasks_and_peers(tmp_path: Path) -> None:
+    few = replace(TINY.network, decoder="candidates", decision_layers=1, candidates=3, peers=1)
+    first = checkpoint.start(tmp_path / "first", replace(TINY, network=few))
+    first.validate()
+    checkpoint.save(tmp_path / "first", first, 0.0)
+    more = replace(TINY, network=replace(few, candidates=5, peers=2), initial=str(tmp_path / "first"))
+    second = Reinforce(more)
+    assert second.network.config == more.network
+    for name, value in weights(first).items():
+        assert torch.equal(value, weights(second)[name])
+    with pytest.raises(ConfigError, match=r"decision_layers=1.*decision_layers=2"):
+        Reinforce(replace(more, network=replace(more.network, decision_layers=2)))
+
+
 def test_a_folder_holds_one_run(tmp_path: Path) -> None:
     checkpoint.start(tmp_path, TINY)
     with pytest.raises(ConfigError, match=r"already holds a run; go on with it \(--resume\)"):
