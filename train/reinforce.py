@@ -245,11 +245,12 @@ class Reinforce:
 
         policy, config = load_policy(initial), self.config
         info = policy.info
-        if info.sharing != config.sharing or not info.network.shares_weights(config.network):
-            raise ConfigError(
-                f"initial is {initial!r}, which is {info.sharing} {info.network}; "
-                f"the run is {config.sharing} {config.network}"
-            )
+        differences = info.network.differences(config.network)
+        if info.sharing != config.sharing:
+            differences = {"sharing": (info.sharing, config.sharing), **differences}
+        if differences:
+            told = ", ".join(f"{name} {theirs} (the run: {mine})" for name, (theirs, mine) in differences.items())
+            raise ConfigError(f"initial is {initial!r}, which has {told}; expected a policy like the run's")
         if info.sharing == "by-capacity" and info.kinds != config.kinds:
             raise ConfigError(f"initial is {initial!r}, for kinds {info.kinds}; the run is for kinds {config.kinds}")
         load_state(self.network, dict(policy.network.state_dict()), Path(initial))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields
+from typing import Any
 
 from mrta_zoo.errors import ConfigError
 
@@ -76,6 +77,9 @@ class NetworkConfig:
         if not 0 < self.tanh_clip < math.inf:
             raise ConfigError(f"tanh_clip is {self.tanh_clip}; expected a number > 0")
 
-    def shares_weights(self, other: NetworkConfig) -> bool:
-        """Whether the weights of one are those of the other: all but what the decoder looks at is the same."""
-        return replace(self, candidates=other.candidates, peers=other.peers) == other
+    def differences(self, other: NetworkConfig) -> dict[str, tuple[Any, Any]]:
+        """What keeps weights of one from serving the other: settings that differ, `candidates` and `peers` aside."""
+        values = {each.name: (getattr(self, each.name), getattr(other, each.name)) for each in fields(self)}
+        return {
+            name: pair for name, pair in values.items() if name not in ("candidates", "peers") and pair[0] != pair[1]
+        }

@@ -118,7 +118,7 @@ def test_a_run_may_start_from_another_and_resume_without_it(tmp_path: Path) -> N
     list(second.run()), list(resumed.run())
     for name, value in weights(second).items():
         assert torch.equal(value, weights(resumed)[name])
-    with pytest.raises(ConfigError, match=r"which is shared NetworkConfig.*the run is shared NetworkConfig"):
+    with pytest.raises(ConfigError, match=r"which has embedding 32 \(the run: 128\), heads 4 \(the run: 8\); expected"):
         Reinforce(replace(TINY, initial=str(tmp_path / "elsewhere"), network=NetworkConfig()))
 
 
@@ -132,7 +132,7 @@ def test_a_run_may_start_from_weights_that_looked_at_fewer_tasks_and_peers(tmp_p
     assert second.network.config == more.network
     for name, value in weights(first).items():
         assert torch.equal(value, weights(second)[name])
-    with pytest.raises(ConfigError, match=r"decision_layers=1.*decision_layers=2"):
+    with pytest.raises(ConfigError, match=r"which has decision_layers 1 \(the run: 2\); expected"):
         Reinforce(replace(more, network=replace(more.network, decision_layers=2)))
 
 
