@@ -109,7 +109,7 @@ def solve_command(argv: Sequence[str]) -> None:
         check_destination(command.plot)
         check_picture_format(command.plot)
     outputs = {"--out": command.out, "--plot": command.plot}
-    read = {"the task file": command.taskfile, "the agent file": agent_file(command)}
+    read = {"the task file": command.taskfile, "the agent file": agent_file(command.taskfile, command.agents)}
     check_distinct(outputs, {**read, **policy_files(command.method)})
     scenario = read_scenario(command.taskfile, command.agents)
     with preparing():
@@ -143,12 +143,17 @@ def policy_files(method: str) -> dict[str, Path]:
     return {f"the weights of {method}": place, f"what belongs to the weights of {method}": place.with_suffix(".json")}
 
 
-def agent_file(command: Solve) -> Path | None:
-    """The file that the robots are read from, None if it is the task file."""
-    if command.agents is not None or command.taskfile.suffix.lower() in (".json", ".csv"):
-        return command.agents
+def agent_file(task_file: Path, agents: Path | None) -> Path | None:
+    """The file that the robots are read from, None if it is the task file.
+
+    Args:
+        task_file: the mission's.
+        agents: the file of the robots, if one is named.
+    """
+    if agents is not None or task_file.suffix.lower() in (".json", ".csv"):
+        return agents
     try:
-        return find_agent_file(command.taskfile)
+        return find_agent_file(task_file)
     except ScenarioError:  # the reader has more to say: maybe there is no task file either
         return None
 

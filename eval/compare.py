@@ -16,7 +16,7 @@ from tyro.conf import Positional, arg
 from mrta_zoo.debug.advisors import Advisor, make_advisor
 from mrta_zoo.debug.comparison import Alternative, Comparison, Outcome, Parting, compare
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.commands import TRAINED_HELP, PlanningFlags
+from mrta_zoo.eval.commands import TRAINED_HELP, PlanningFlags, agent_file, policy_files
 from mrta_zoo.eval.console import preparing, results_console
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
@@ -76,7 +76,10 @@ def compare_command(argv: Sequence[str]) -> None:
     if command.out:
         check_destination(command.out)
         files = {name: Path(name) for name in both if name.endswith(".json")}
-        check_distinct({"--out": command.out}, {"the scenario": command.scenario, **files})
+        for name in both:
+            files |= policy_files(name)
+        read = {"the scenario": command.scenario, "the agent file": agent_file(command.scenario, command.agents)}
+        check_distinct({"--out": command.out}, {**read, **files})
     scenario = read_scenario(command.scenario, command.agents)
     with (
         preparing(f"plans {command.scenario} by {' and '.join(both)}, and again from where they part"),

@@ -11,7 +11,7 @@ from tyro.conf import Positional, arg
 
 from mrta_zoo.debug.recorder import record
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.commands import METHOD_HELP, PlanningFlags
+from mrta_zoo.eval.commands import METHOD_HELP, PlanningFlags, agent_file, policy_files
 from mrta_zoo.eval.console import preparing, results_console
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
@@ -75,7 +75,13 @@ def replay_command(argv: Sequence[str]) -> None:
     if command.policy is None and kind in (PLAN, TRACE):
         chosen = []
     files = {f"the file {name}": Path(name) for name in chosen if json_kind(Path(name))}
-    inputs = {"the source": command.source, "--scenario": command.scenario, "--agents": command.agents}
+    for name in chosen:
+        files |= policy_files(name)
+    inputs = {
+        "the source": command.source,
+        "--scenario": command.scenario,
+        "the agent file": agent_file(command.scenario or command.source, command.agents),
+    }
     check_distinct({"--out": command.out}, {**inputs, **files})
     sides = len(chosen) + (kind in (PLAN, TRACE))
     if sides > MOST_SIDES:

@@ -16,6 +16,7 @@ from mrta_zoo.extras import require
 Command = Callable[[list[str]], None]
 """Runs a command with the arguments that follow its name."""
 
+NO_MEMORY = "not enough memory for this command; expected a smaller mission, or lower numbers in its options"
 USER_ERROR, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
 
 
@@ -143,13 +144,15 @@ def main(argv: Sequence[str] | None = None) -> int:
         where = "the output" if error.filename is None else os.fsdecode(error.filename)
         return _complain(f"{where}: {(error.strerror or str(error)).lower()}")
     except MemoryError:
-        return _complain(
-            "not enough memory for this command; expected a smaller mission, or lower numbers in its options"
-        )
+        return _complain(NO_MEMORY)
     except RecursionError:
         return _complain(
             "this command's input is nested too deeply; expected a scenario, plan or policy of this package"
         )
+    except RuntimeError as error:  # which is what torch says, on a CPU and on a GPU
+        if "can't allocate memory" in str(error) or "out of memory" in str(error):
+            return _complain(NO_MEMORY)
+        raise
 
 
 def _dispatch(arguments: list[str]) -> int:

@@ -38,6 +38,8 @@ def cases(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (["solve", "CASE", "--method", "nearest", "--seed", "9" * 23], "expected a whole number from 0 to 922337"),
         (["solve", "CASE", "--method", "nearest", "--out", "CASE"], ", which is the task file; expected a file of its"),
         (["solve", "CASE", "--method", "nearest", "--out", "AGENTS"], ", which is the agent file; expected a file of"),
+        (["replay", "CASE", "--policy", "nearest", "--out", "AGENTS"], ", which is the agent file; expected a file of"),
+        (["compare", "CASE", "--methods", "nearest,edf", "--out", "AGENTS"], ", which is the agent file; expected a"),
         (
             ["solve", "CASE", "--method", "nearest", "--out", "x.svg", "--plot", "./x.svg"],
             "which is also --out; expected",
@@ -92,7 +94,7 @@ def test_mistakes_get_a_sentence(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["EMPTY", "HOLLOW"]
 
 
-@pytest.mark.parametrize("command", ["solve", "eval"])
+@pytest.mark.parametrize("command", ["solve", "eval", "replay", "compare"])
 @pytest.mark.parametrize("suffix", ["safetensors", "json"])
 def test_no_policy_is_written_over(command: str, suffix: str, cases: Path, tmp_path: Path, capsys: Captured) -> None:
     for ending in ("safetensors", "json"):
@@ -100,7 +102,12 @@ def test_no_policy_is_written_over(command: str, suffix: str, cases: Path, tmp_p
     target = tmp_path / f"policy.{suffix}"
     for policy in (str(tmp_path), str(tmp_path / "policy.safetensors"), f"{tmp_path}+polish"):
         task_file = str(next((cases / "group1").glob("*.txt")))
-        what = [task_file, "--method", policy] if command == "solve" else ["--cases", str(cases), "--methods", policy]
+        what = {
+            "solve": [task_file, "--method", policy],
+            "eval": ["--cases", str(cases), "--methods", policy],
+            "replay": [task_file, "--policy", policy],
+            "compare": [task_file, "--methods", f"nearest,{policy}"],
+        }[command]
         assert "weights of" in fails(capsys, [command, *what, "--out", str(target)])
     assert target.read_text() == "precious"
 
@@ -136,6 +143,8 @@ def test_a_folder_without_permission(cases: Path, tmp_path: Path, capsys: Captur
         (PermissionError(13, "Permission denied", "some/file"), "error: some/file: permission denied\n"),
         (OSError(28, "No space left on device"), "error: the output: no space left on device\n"),
         (MemoryError(), "error: not enough memory for this command; expected"),
+        (RuntimeError("DefaultCPUAllocator: can't allocate memory: you tried to"), "error: not enough memory for this"),
+        (RuntimeError("CUDA out of memory. Tried to allocate"), "error: not enough memory for this command; expected"),
         (RecursionError(), "nested too deeply; expected"),
         (ScenarioError("a\x1b[31m.json: two\nlines"), "error: a\\x1b[31m.json: two lines\n"),
     ],

@@ -20,7 +20,7 @@ import os
 import sys
 import time
 import zipfile
-from dataclasses import asdict, fields, replace
+from dataclasses import MISSING, asdict, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +33,8 @@ from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.experts import read_plans
 from mrta_zoo.train.reinforce import Reinforce, RunOptions, Update, Validation
 
+KINDS = {int: "a whole number", float: "a number", bool: "true or false", str: "a text", tuple: "a list"}
+"""How JSON's kinds of values are called."""
 MAY_CHANGE = ("updates", "epoch")
 """What a run may be resumed with other values of."""
 
@@ -60,15 +62,27 @@ def train(
         resume: go on from OUT.last.npz.
 
     Raises:
-        ConfigError: if there is imitation to be done and no plans, the baseline is not "samples", there is no folder
-            for `out`, or what is to be resumed is missing, damaged, or of another run.
+        ConfigError: if there is imitation to be done and no plans, the baseline is not "samples", there is a policy to
+            start from and no msgspec and safetensors to read it with, there is no folder for `out`, a run is there that
+            is not to be resumed, or what is to be resumed is missing, damaged, or of another run.
     """
     if config.baseline != "samples":
         raise ConfigError(f"baseline is {config.baseline!r}, which needs SciPy; expected samples")
     if not out.parent.is_dir():
         raise ConfigError(f"{out.parent} is no folder; expected one for {out.name}.npz and the other files")
+    there = [path for ending in ("npz", "last.npz", "json") if (path := out.with_name(f"{out.name}.{ending}")).exists()]
+    if there and not resume:
+        raise ConfigError(f"{there[0]} is there already; go on with that run (--resume), or give another OUT")
     begun, asked = time.perf_counter(), config
-    run = Reinforce(config, options=RunOptions(workers, compiled))
+    try:
+        # To be resumed, it has its weights; what it once began from may be gone.
+        run = Reinforce(replace(config, initial="") if resume else config, options=RunOptions(workers, compiled))
+    except ModuleNotFoundError as error:
+        raise ConfigError(
+            f"initial is {config.initial!r}, which cannot be read without {error.name}; expected none on a machine "
+            "with torch and NumPy alone"
+        ) from None
+    run.config = config
     spent = _resume(out, run) if resume else 0.0
     config = run.config
     if run.update < config.imitation_updates:
@@ -155,12 +169,23 @@ def read_config(path: Path) -> TrainConfig:
 
 def _config_of(values: dict[str, Any]) -> TrainConfig:
     rest = {name: value for name, value in values.items() if name != "network"}
-    return TrainConfig(network=NetworkConfig(**_with_tuples(values.get("network", {}))), **_with_tuples(rest))
+    network = NetworkConfig(**_arguments(NetworkConfig, values.get("network", {})))
+    return TrainConfig(network=network, **_arguments(TrainConfig, rest))
 
 
-def _with_tuples(values: dict[str, Any]) -> dict[str, Any]:
-    """JSON has only lists where the dataclasses have tuples."""
-    return {name: tuple(value) if isinstance(value, list) else value for name, value in values.items()}
+def _arguments(of: type[NetworkConfig | TrainConfig], values: dict[str, Any]) -> dict[str, Any]:
+    """What JSON says of a dataclass, as its arguments: tuples where JSON has only lists.
+
+    Raises:
+        ConfigError: if a value is of another kind than the field's default.
+    """
+    arguments = {name: tuple(value) if isinstance(value, list) else value for name, value in values.items()}
+    for field in fields(of):
+        if field.name in arguments and field.default is not MISSING:
+            expected, value = type(field.default), arguments[field.name]
+            if type(value) is not expected and (expected, type(value)) != (float, int):
+                raise ConfigError(f"{field.name} is {json.dumps(value)}; expected {KINDS[expected]}")
+    return arguments
 
 
 def _write(out: Path, run: Reinforce, asked: TrainConfig, seconds: float) -> None:

@@ -109,6 +109,9 @@ class Reinforce:
         self.device = _device(config.device)
         self.generator = generator
         self.objective = OBJECTIVES[config.objective] if objective is None else checked(objective)
+        if generator is None:
+            for tasks in config.tasks:
+                training_generator(config, tasks)  # now rather than at the first update
         if generator is None and config.sharing == "by-capacity" and config.generator != "taptc":
             raise ConfigError(
                 f"sharing is 'by-capacity', a network for each of a few kinds of robots, and generator "

@@ -17,7 +17,7 @@ from sentences import check_sentence
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.train import bare, experts, imitator
+from mrta_zoo.train import bare, checkpoint, experts, imitator
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.experts import make_shard
 from mrta_zoo.train.presets import PRESETS
@@ -151,7 +151,13 @@ def test_configurations_come_back(tmp_path: Path) -> None:
         ("[1]", "not a configuration"),
         ('{"updates": 4, "learning_rte": 1}', "learning_rte"),
         ('{"network": {"embeding": 32}}', "embeding"),
-        ('{"updates": "four"}', "not a configuration"),
+        ('{"updates": "four"}', 'updates is "four"; expected a whole number'),
+        ('{"updates": 1.5}', "updates is 1.5; expected a whole number"),
+        ('{"learning_rate": null}', "learning_rate is null; expected a number"),
+        ('{"normalise": 1}', "normalise is 1; expected true or false"),
+        ('{"initial": ["a"]}', 'initial is ["a"]; expected a text'),
+        ('{"tasks": 100}', "tasks is 100; expected a list"),
+        ('{"network": {"candidates": true}}', "candidates is true; expected a whole number"),
         ('{"updates": 0}', "updates is 0; expected a whole number >= 1"),
         ('{"network": {"heads": 7}}', "embedding is 128; expected a multiple of heads, 7"),
     ],
@@ -170,6 +176,35 @@ def test_what_it_cannot_do_is_told(tmp_path: Path) -> None:
         bare.train(replace(TINY, baseline="rollout"), tmp_path / "out")
     with pytest.raises(ConfigError, match="not a configuration"):
         bare.read_config(tmp_path / "nothing.json")
+
+
+def test_no_file_that_is_there_is_written_over(tmp_path: Path) -> None:
+    for name in ("out.npz", "out.last.npz", "out.json"):
+        (tmp_path / name).write_text("precious")
+        with pytest.raises(ConfigError, match=rf"{name} is there already; go on with that run \(--resume\), or give"):
+            bare.train(TINY, tmp_path / "out")
+        assert (tmp_path / name).read_text() == "precious"
+        (tmp_path / name).unlink()
+
+
+def test_a_policy_to_begin_from_takes_more_than_torch_and_numpy(tmp_path: Path) -> None:
+    config = replace(TINY, initial="capam-plus", imitation_updates=0)
+    (tmp_path / "config.json").write_text(json.dumps(asdict(config)))
+    command = [sys.executable, "-c", ALONE, "config.json", "out"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=240, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: initial is 'capam-plus', which cannot be read without msgspec; expected none")
+
+
+def test_resumed_it_does_not_need_what_it_began_from(tmp_path: Path) -> None:
+    first = checkpoint.start(tmp_path / "first", replace(TINY, imitation_updates=0))
+    first.validate()
+    checkpoint.save(tmp_path / "first", first, 0.0)
+    config = replace(TINY, imitation_updates=0, initial=str(tmp_path / "first"), updates=2)
+    bare.train(config, tmp_path / "out")
+    (tmp_path / "first").rename(tmp_path / "gone")
+    bare.train(replace(config, updates=4), tmp_path / "out", resume=True)
+    assert about(tmp_path / "out.last.npz")["update"] == 4
 
 
 def test_says_how_many_plans_there_were(tmp_path: Path, plans: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -229,6 +264,7 @@ def test_what_cannot_be_resumed_is_told(tmp_path: Path) -> None:
         last.write_bytes(junk)
         with pytest.raises(ConfigError, match=r"out\.last\.npz: not what a run leaves to go on with"):
             bare.train(config, tmp_path / "out", resume=True)
+    last.unlink()
     bare.train(config, tmp_path / "out")
     with pytest.raises(ConfigError, match="is of another run: seed was 0, now it is 1"):
         bare.train(replace(config, seed=1), tmp_path / "out", resume=True)

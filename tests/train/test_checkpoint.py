@@ -136,6 +136,12 @@ def test_a_run_may_start_from_weights_that_looked_at_fewer_tasks_and_peers(tmp_p
         Reinforce(replace(more, network=replace(more.network, decision_layers=2)))
 
 
+def test_a_run_whose_scenarios_cannot_be_drawn_leaves_nothing(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match=r"tasks is \(10000000, 10000000\)"):
+        checkpoint.start(tmp_path / "run", replace(TINY, tasks=(10_000_000,), reference_tasks=10_000_000))
+    assert not (tmp_path / "run").exists()
+
+
 def test_a_folder_holds_one_run(tmp_path: Path) -> None:
     checkpoint.start(tmp_path, TINY)
     with pytest.raises(ConfigError, match=r"already holds a run; go on with it \(--resume\)"):
