@@ -1,5 +1,6 @@
 """Puts this folder on the path, so that tests in subfolders can `from strategies import ...`."""
 
+import gc
 import hashlib
 import os
 import tempfile
@@ -14,3 +15,9 @@ torch.set_num_threads(1)  # at the tests' sizes more threads only get in each ot
 _SOURCES = sorted((Path(__file__).parent.parent / "policies" / "local_search").glob("*.py"))
 _DIGEST = hashlib.sha256(b"".join(path.read_bytes() for path in _SOURCES)).hexdigest()[:16]
 os.environ["NUMBA_CACHE_DIR"] = str(Path(tempfile.gettempdir()) / f"mrta_zoo_numba_{_DIGEST}")
+
+
+def pytest_collection_finish() -> None:
+    """Spares every full collection (statsmodels asks for one a call) the objects that the imports made."""
+    gc.collect()
+    gc.freeze()

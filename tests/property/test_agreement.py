@@ -25,6 +25,8 @@ from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
 
 RULES = get_args(MaskRule)
+ACTIVE, ASSIGNED, COMPLETED, MISSED = Status
+CHOOSABLE, TAKEN, DEADLINE_PASSED, TOO_LATE, _ = map(int, MaskReason)
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,11 +78,11 @@ def expected(scenario: Scenario, routes: list[list[int]], rule: MaskRule) -> Exp
     status = []
     for end, deadline in zip(finish, deadlines, strict=True):
         if math.isnan(end):
-            status.append(Status.MISSED if deadline < time else Status.ACTIVE)
+            status.append(MISSED if deadline < time else ACTIVE)
         elif end > time:
-            status.append(Status.ASSIGNED)
+            status.append(ASSIGNED)
         else:
-            status.append(Status.COMPLETED if end <= deadline else Status.MISSED)
+            status.append(COMPLETED if end <= deadline else MISSED)
     free = [robot for now, robot in with_choice if now == time]
     return Expected(time, actor, ready, retired, free, masks, finish_if, finish, status)
 
@@ -100,18 +102,15 @@ def check_mission(mission: Mission, want: Expected) -> None:
     if not mission.done:
         assert mission.ready[mission.actor] == mission.time
         assert mission.mask(mission.actor).any(), "a mask is never all zeros for a robot that must act"
-    deadline = mission.scenario.deadline
-    for robot in range(mission.scenario.num_robots):
-        reasons = mission.reasons(robot)
-        assert ((reasons == MaskReason.CHOOSABLE) == mission.mask(robot)).all()
-        assert ((reasons == MaskReason.TAKEN) == (mission.taken_by >= 0)).all()
-        passed = reasons == MaskReason.DEADLINE_PASSED
-        assert (deadline[passed] < mission.ready[robot]).all()
-        too_late = reasons == MaskReason.TOO_LATE
-        assert (mission.finish_if[robot][too_late] > deadline[too_late]).all()
-        assert (deadline[too_late] >= mission.ready[robot]).all()
-        if mission.mask_rule != "feasible":
-            assert not too_late.any()
+    reasons = np.stack([mission.reasons(robot) for robot in range(mission.scenario.num_robots)])
+    late = mission.finish_if > mission.scenario.deadline
+    over = mission.scenario.deadline < np.array(mission.ready)[:, None]
+    assert ((reasons == CHOOSABLE) == want.masks).all()
+    assert ((reasons == TAKEN) == (mission.taken_by >= 0)).all()
+    assert over[reasons == DEADLINE_PASSED].all()
+    assert (late & ~over)[reasons == TOO_LATE].all()
+    if mission.mask_rule != "feasible":
+        assert not (reasons == TOO_LATE).any()
 
 
 def check_end(mission: Mission, events: list[Finished], batch: BatchMission, b: int, plan: Plan) -> None:
@@ -130,7 +129,7 @@ def check_end(mission: Mission, events: list[Finished], batch: BatchMission, b: 
         assert mission.finish[visit.task] == visit.finish == float(batch.finish[b, visit.task])
         assert visit.completed == (visit.finish <= visit.deadline)
         assert mission.taken_by[visit.task] == robot
-        assert mission.status[visit.task] == (Status.COMPLETED if visit.completed else Status.MISSED)
+        assert mission.status[visit.task] == (COMPLETED if visit.completed else MISSED)
         if mission.mask_rule == "feasible":
             assert visit.completed, "a feasible choice is never late"
     if mission.mask_rule == "unvisited":
