@@ -4,8 +4,9 @@ The paper compares with EILS (A. Mitiche, D. Boughaci, M. Gini, "Iterated local 
 task allocation with spatio-temporal and capacity constraints", Journal of Intelligent Systems 28, 2019). The details of
 its perturbation could not be recovered, so this one is ours, in the spirit of slack induction by string removals (J.
 Christiaens, G. Vanden Berghe, Transportation Science 54, 2020): near a random task, remove a string of consecutive
-visits from some tours, then refill those tours with the unvisited tasks, by the least Shift times a random weight. What
-comes out is kept if it completes more tasks or takes less time, or is worse by no more than chance allows.
+visits from some tours, then refill those tours with the unvisited tasks, either by the least Shift times a random
+weight or, as they do, by deadline. The first does better where most tasks cannot be done, the second where most can.
+What comes out is kept if it completes more tasks or takes less time, or is worse by no more than chance allows.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from numba import njit
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
-from mrta_zoo.policies.local_search.insertion import fill
+from mrta_zoo.policies.local_search.insertion import fill, fill_by_deadline
 from mrta_zoo.policies.local_search.problem import Problem, make_problem, smallest_scenario
 from mrta_zoo.policies.local_search.tours import Tours, copy_tour, copy_tours, empty_tours, plan_of, remove, tours_of
 from mrta_zoo.scenario import FloatArray, Scenario
@@ -43,6 +44,8 @@ class EilsConfig:
         least_iterations: but not before so many, >= 1.
         removals: visits that a perturbation removes on average, >= 1.
         noise: random weights of Shift lie between 1 and 1 + noise, >= 0.
+        by_deadline: share of the refills that go by deadline instead, 0 to 1.
+        blink: probability with which these do not offer a task to a tour, 0 to 1.
         reward: what a completed task is worth, in time, > 0.
         hot: temperature at the beginning, in time, > 0.
         cold: temperature at the end, in time, > 0.
@@ -55,6 +58,8 @@ class EilsConfig:
     least_iterations: int = 300
     removals: float = 16.0
     noise: float = 1.0
+    by_deadline: float = 0.7
+    blink: float = 0.01
     reward: float = 4.0
     hot: float = 2.0
     cold: float = 0.1
@@ -68,6 +73,9 @@ class EilsConfig:
                 raise ConfigError(f"{field} is {getattr(self, field)}; expected a number > 0")
         if not 0 <= self.noise < math.inf:
             raise ConfigError(f"noise is {self.noise}; expected a number >= 0")
+        for field in ("by_deadline", "blink"):
+            if not 0 <= getattr(self, field) <= 1:
+                raise ConfigError(f"{field} is {getattr(self, field)}; expected a number from 0 to 1")
 
 
 class EilsSolver:
@@ -159,7 +167,7 @@ def _search(
         temperature = visit_time * config.hot * (config.cold / config.hot) ** share
         anneal(
             problem, tours, trial, best, shift, weight, chunk, temperature, config.removals, config.noise,
-            config.reward * visit_time, rng,
+            config.by_deadline, config.blink, config.reward * visit_time, rng,
         )  # fmt: skip
         done += chunk
         share = done / iterations if budget is None else (time.perf_counter() - begun) / budget
@@ -178,6 +186,8 @@ def anneal(
     temperature: float,
     removals: float,
     noise: float,
+    by_deadline: float,
+    blink: float,
     reward: float,
     rng: np.random.Generator,
 ) -> None:
@@ -194,6 +204,8 @@ def anneal(
         temperature: a change that is worse by so much time is accepted with probability 1/e.
         removals: visits removed on average.
         noise: weights of Shift lie between 1 and 1 + noise.
+        by_deadline: share of the refills that go by deadline instead.
+        blink: probability with which these do not offer a task to a tour.
         reward: what a completed task is worth, in time.
         rng: of all draws.
     """
@@ -204,10 +216,13 @@ def anneal(
     for _ in range(iterations):
         changed[:] = False
         remove_strings(problem, trial, changed, removals, rng)
-        for task in range(n):
-            if trial.robot[task] < 0:
-                weight[task] = 1.0 + noise * rng.random()
-        fill(problem, trial, shift, changed, weight)
+        if by_deadline > 0.0 and rng.random() < by_deadline:
+            fill_by_deadline(problem, trial, changed, blink, rng)
+        else:
+            for task in range(n):
+                if trial.robot[task] < 0:
+                    weight[task] = 1.0 + noise * rng.random()
+            fill(problem, trial, shift, changed, weight)
         new_value = reward * trial.size.sum() - total_time(trial)
         if new_value > value + temperature * math.log(1.0 - rng.random()):
             value = new_value

@@ -1,4 +1,4 @@
-"""The insertion step of ILS: put unvisited tasks where they cost the least time, until nothing fits."""
+"""Putting unvisited tasks where they cost the least time: always the cheapest (ILS), or by their deadlines (SISR)."""
 
 from __future__ import annotations
 
@@ -70,6 +70,35 @@ def fill(
             for other in range(m):
                 if other == winner or (inserted and best_task[other] == task):
                     best_task[other], best_value[other] = _choose(shift, other, weight, free, unvisited)
+
+
+@njit(cache=True, nogil=True)
+def fill_by_deadline(
+    problem: Problem, tours: Tours, open_tours: npt.NDArray[np.bool_], blink: float, rng: np.random.Generator
+) -> None:
+    """Insert the unvisited tasks, the earliest deadline first, each where its Shift is least, if it fits at all.
+
+    One of the orders in which Christiaens and Vanden Berghe (2020), §5.2, insert; unlike theirs, a blink passes over a
+    whole tour, not a position.
+
+    Args:
+        problem: the scenario.
+        tours: is filled.
+        open_tours: (M,) the tours that may get tasks.
+        blink: probability with which a task is not offered to a tour.
+        rng: of the blinks.
+    """
+    for task in problem.by_deadline:
+        if tours.robot[task] >= 0:
+            continue
+        winner, place, least = -1, -1, np.inf
+        for robot in range(len(problem.speed)):
+            if open_tours[robot]:
+                position, shift = _best_position(problem, tours, task, robot)
+                if shift < least and rng.random() >= blink:
+                    winner, place, least = robot, position, shift
+        if winner >= 0:
+            insert(problem, tours, task, winner, place)  # or not, if the look-up was wrong by a rounding error
 
 
 @njit(cache=True, nogil=True)

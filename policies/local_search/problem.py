@@ -24,6 +24,7 @@ class Problem(NamedTuple):
         latest: (M, N) when each robot must have reached each task, with the tolerance.
         speed: (M,) of each robot.
         neighbours: (N, N') for each task the others, nearest first, at most `MOST_NEIGHBOURS`.
+        by_deadline: (N,) the tasks, the earliest deadline first.
     """
 
     distance: FloatArray
@@ -32,6 +33,7 @@ class Problem(NamedTuple):
     latest: FloatArray
     speed: FloatArray
     neighbours: npt.NDArray[np.int64]
+    by_deadline: npt.NDArray[np.int64]
 
 
 MOST_NEIGHBOURS = 100
@@ -54,6 +56,7 @@ def make_problem(scenario: Scenario) -> Problem:
         latest=scenario.deadline * (1.0 + TOLERANCE) - work,
         speed=scenario.speed.copy(),
         neighbours=np.argsort(between, axis=1, kind="stable")[:, 1 : count + 1].copy(),
+        by_deadline=np.argsort(scenario.deadline, kind="stable"),
     )
 
 
