@@ -54,8 +54,8 @@ class EilsConfig:
         ConfigError: if a value is out of range.
     """
 
-    iterations_a_task: int = 3
-    least_iterations: int = 300
+    iterations_a_task: int = 8
+    least_iterations: int = 800
     removals: float = 16.0
     noise: float = 1.0
     by_deadline: float = 0.7
