@@ -5,8 +5,9 @@ task allocation with spatio-temporal and capacity constraints", Journal of Intel
 its perturbation could not be recovered, so this one is ours, in the spirit of slack induction by string removals (J.
 Christiaens, G. Vanden Berghe, Transportation Science 54, 2020): near a random task, remove a string of consecutive
 visits from some tours, then refill those tours with the unvisited tasks, either by the least Shift times a random
-weight or, as they do, by deadline. The first does better where most tasks cannot be done, the second where most can.
-What comes out is kept if it completes more tasks or takes less time, or is worse by no more than chance allows.
+weight or one after another, as they do, but by deadline. The first does better where most tasks cannot be done, the
+second where most can. What comes out is kept if it completes more tasks or takes less time, or is worse by no more than
+chance allows.
 """
 
 from __future__ import annotations
@@ -216,7 +217,7 @@ def anneal(
     for _ in range(iterations):
         changed[:] = False
         remove_strings(problem, trial, changed, removals, rng)
-        if by_deadline > 0.0 and rng.random() < by_deadline:
+        if by_deadline > 0.0 and rng.random() < by_deadline:  # where there is no choice, nothing is drawn
             fill_by_deadline(problem, trial, changed, blink, rng)
         else:
             for task in range(n):

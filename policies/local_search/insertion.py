@@ -1,4 +1,4 @@
-"""Putting unvisited tasks where they cost the least time: always the cheapest (ILS), or by their deadlines (SISR)."""
+"""Putting unvisited tasks where they cost the least time: always the cheapest (ILS), or one by one, by deadline."""
 
 from __future__ import annotations
 
@@ -78,8 +78,8 @@ def fill_by_deadline(
 ) -> None:
     """Insert the unvisited tasks, the earliest deadline first, each where its Shift is least, if it fits at all.
 
-    One of the orders in which Christiaens and Vanden Berghe (2020), §5.2, insert; unlike theirs, a blink passes over a
-    whole tour, not a position.
+    After the recreation of Christiaens and Vanden Berghe (2020), which inserts in an order and "blinks"; the order is
+    ours, and a blink passes over a whole tour, not a position.
 
     Args:
         problem: the scenario.
