@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import math
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass, field, fields
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +18,7 @@ FloatArray = npt.NDArray[np.float64]
 
 SMALLEST, LARGEST = 1e-12, 1e12
 """What a positive quantity may be: times and distances made of such numbers neither overflow nor vanish."""
+_UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")
 BOUNDS = f", from {SMALLEST:g} to {LARGEST:g}"
 
 
@@ -32,12 +37,16 @@ class Scenario:
         robot_xy: (M, 2) places where the robots start at time 0, inside the map.
         capacity: (M,) work done per time unit, > 0.
         speed: (M,) distance travelled per time unit, > 0; 1 for every robot by default.
-        map_size: width and height of the map, whose corner is the origin, > 0.
+        map_size: width and height of the map, > 0.
         name: what files, tables and pictures call this scenario.
+        map_origin: the map's lowest x and y, which may be negative. By default 0 and 0 or, where the map would not
+            hold every place then, the least whole x and y of all places, see `map_origin_for`.
+        task_names: what people call the tasks, each differently; none if they have no names but their numbers.
+        robot_names: likewise for the robots.
 
     Raises:
         ScenarioError: if an array has the wrong shape, or a value is out of range: positive numbers must lie between
-            `SMALLEST` and `LARGEST`, and none may be NaN or infinite.
+            `SMALLEST` and `LARGEST`, coordinates within `LARGEST` of 0, and none may be NaN or infinite.
     """
 
     task_xy: FloatArray
@@ -48,6 +57,9 @@ class Scenario:
     speed: FloatArray = field(default_factory=lambda: np.empty(0))
     map_size: tuple[float, float] = (100.0, 100.0)
     name: str = "scenario"
+    map_origin: tuple[float, float] = (math.nan, math.nan)
+    task_names: tuple[str, ...] = ()
+    robot_names: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for attribute in ("task_xy", "deadline", "workload", "robot_xy", "capacity", "speed"):
@@ -72,13 +84,14 @@ class Scenario:
                     f"{attribute} has shape {getattr(self, attribute).shape}; with {n} deadlines and "
                     f"{m} capacities it must be {shape}"
                 )
-        try:
-            size = tuple(float(side) for side in self.map_size)
-        except (TypeError, ValueError):
-            size = ()
-        if len(size) != 2 or not all(SMALLEST <= side <= LARGEST for side in size):
-            raise ScenarioError(f"map_size is {self.map_size!r}; expected two finite numbers > 0{BOUNDS}")
-        object.__setattr__(self, "map_size", size)
+        object.__setattr__(
+            self, "map_size", _pair(self.map_size, "map_size", SMALLEST, f"two finite numbers > 0{BOUNDS}")
+        )
+        origin = self.map_origin
+        if all(isinstance(each, float) and math.isnan(each) for each in origin):
+            origin = map_origin_for(np.concatenate((self.task_xy, self.robot_xy)), self.map_size)
+        within = f"two numbers from {-LARGEST:g} to {LARGEST:g}"
+        object.__setattr__(self, "map_origin", _pair(origin, "map_origin", -LARGEST, within))
         for who, what in (("task", "deadline"), ("robot", "capacity"), ("robot", "speed")):
             values = getattr(self, what)
             _check(values, who, what, values > 0, "a finite number > 0")
@@ -86,10 +99,11 @@ class Scenario:
         _check(self.workload, "task", "workload", self.workload >= 0, "a finite number >= 0")
         _check(self.workload, "task", "workload", self.workload <= LARGEST, f"a number from 0 to {LARGEST:g}")
         for who, places in (("task", self.task_xy), ("robot", self.robot_xy)):
-            for axis, letter in enumerate("xy"):
-                values = places[:, axis]
-                inside = (values >= 0) & (values <= size[axis])
-                _check(values, who, letter, inside, f"a number from 0 to {size[axis]:g}, inside the map")
+            for letter, values, low, high in zip("xy", places.T, self.map_origin, self.map_end, strict=True):
+                inside = (values >= low) & (values <= high)
+                _check(values, who, letter, inside, f"a number from {low:g} to {high:g}, inside the map")
+        object.__setattr__(self, "task_names", as_names(self.task_names, "task", n))
+        object.__setattr__(self, "robot_names", as_names(self.robot_names, "robot", m))
 
     @property
     def num_tasks(self) -> int:
@@ -101,6 +115,20 @@ class Scenario:
         """M, the number of robots."""
         return len(self.capacity)
 
+    @property
+    def map_end(self) -> tuple[float, float]:
+        """The map's highest x and y."""
+        (x, y), (width, height) = self.map_origin, self.map_size
+        return x + width, y + height
+
+    def task_name(self, task: int) -> str:
+        """What people call a task: its name, or its number."""
+        return self.task_names[task] if self.task_names else str(task)
+
+    def robot_name(self, robot: int) -> str:
+        """What people call a robot: its name, or "robot" and its number."""
+        return self.robot_names[robot] if self.robot_names else f"robot {robot}"
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scenario):
             return NotImplemented
@@ -111,7 +139,8 @@ class Scenario:
 
     def _key(self) -> tuple[object, ...]:
         arrays = (self.task_xy, self.deadline, self.workload, self.robot_xy, self.capacity, self.speed)
-        return (self.name, self.map_size, *(array.tobytes() for array in arrays))
+        said = (self.name, self.map_size, self.map_origin, self.task_names, self.robot_names)
+        return (*said, *(array.tobytes() for array in arrays))
 
     def __reduce__(self) -> tuple[type[Scenario], tuple[object, ...]]:
         # Through the constructor, so that a copy is checked and read-only, too.
@@ -133,6 +162,59 @@ class Scenario:
         title = f"{self.name}: {self.num_tasks} tasks, {self.num_robots} robots, map {width:g} by {height:g}"
         picture = map_of(self.map_size, self.task_xy.tolist(), self.deadline.tolist(), self.robot_xy.tolist())
         return table(title, ("", "least", "mean", "most"), rows) + picture
+
+
+def map_origin_for(places: FloatArray, map_size: tuple[float, float]) -> tuple[float, float]:
+    """Where a map lies that says only how large it is.
+
+    At 0 and 0 or, if some coordinate is negative or no place lies on the map then, as in surveys, at the least whole
+    x and y of all places, provided that it holds every place there.
+
+    Args:
+        places: (P, 2) at least one place.
+        map_size: the map's width and height.
+    """
+    on_map = (places <= map_size).all(axis=1)
+    if (places < 0).any() or not on_map.any():
+        corner = np.floor(places.min(axis=0))
+        if (places <= corner + map_size).all():
+            return float(corner[0]), float(corner[1])
+    return 0.0, 0.0
+
+
+def as_names(names: Iterable[object], who: str, count: int) -> tuple[str, ...]:
+    """Names of `count` tasks or robots as text, numbers being names, too; none if they are the numbers from 0 on.
+
+    Raises:
+        ScenarioError: if they are not as many, not texts, empty, not all different, or hold control characters.
+    """
+    expected = f"a different text for each of the {count} {who}s, or nothing"
+    if isinstance(names, (str, bytes)) or not isinstance(names, Iterable):
+        raise ScenarioError(f"{who}_names is {names!r}; expected {expected}")
+    given = tuple(names)
+    if not given:
+        return ()
+    if len(given) != count:
+        raise ScenarioError(f"{who}_names has {len(given)} names; expected {expected}")
+    seen: dict[str, int] = {}
+    for index, name in enumerate(given):
+        text = str(name).strip() if isinstance(name, (str, int, np.integer)) and not isinstance(name, bool) else ""
+        if not text or _UNPRINTABLE.search(text):
+            raise ScenarioError(f"{who} {index} has the name {name!r}; expected text without control characters")
+        if text in seen:
+            raise ScenarioError(f"{who} {index} has the name {text!r}, as {who} {seen[text]}; expected {expected}")
+        seen[text] = index
+    return () if all(name == str(index) for name, index in seen.items()) else tuple(seen)
+
+
+def _pair(value: Any, attribute: str, least: float, expected: str) -> tuple[float, float]:
+    try:
+        x, y = (float(each) + 0.0 for each in value)
+    except (TypeError, ValueError):
+        x = y = math.nan
+    if not (least <= x <= LARGEST and least <= y <= LARGEST):
+        raise ScenarioError(f"{attribute} is {value!r}; expected {expected}")
+    return x, y
 
 
 def _frozen(values: npt.ArrayLike, attribute: str) -> FloatArray:

@@ -136,3 +136,31 @@ def test_a_pickled_scenario_is_still_read_only() -> None:
 def test_numbers_that_would_overflow_or_vanish_are_refused(changes: dict[str, Any], sentence: str) -> None:
     with pytest.raises(ScenarioError, match=re.escape(sentence)):
         make(**changes)
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"task_names": ("a",)}, "task_names has 1 names; expected a different text for each of the 3 tasks"),
+        ({"task_names": ("a", "b", "a")}, "task 2 has the name 'a', as task 0"),
+        ({"task_names": ("a", "b", " ")}, "task 2 has the name ' '; expected text"),
+        ({"task_names": ("a", "b", "c\nd")}, "task 2 has the name .c.nd."),
+        ({"task_names": ("a", "b", 1.5)}, "task 2 has the name 1.5; expected text"),
+        ({"task_names": "abc"}, "task_names is 'abc'; expected"),
+        ({"map_origin": (0, 1, 2)}, r"map_origin is \(0, 1, 2\); expected two numbers"),
+        ({"map_origin": (0, 2e12)}, "map_origin is .*; expected two numbers from -1e"),
+        ({"map_origin": (50, 50)}, "has x .*; expected a number from 50 to 1[05]0, inside the map"),
+    ],
+)
+def test_bad_names_and_maps(changes: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(ScenarioError, match=sentence):
+        make(**changes)
+
+
+def test_names_for_people() -> None:
+    named = make(task_names=["valve-A", 17, "x" * 99], robot_names=["Ann", "Ben"])
+    assert [named.task_name(1), named.robot_name(0)] == ["17", "Ann"]
+    numbered = make(task_names=["0", "1", "2"])  # which are their numbers anyway
+    assert numbered == make()
+    assert [numbered.task_name(1), numbered.robot_name(0)] == ["1", "robot 0"]
+    assert named != numbered

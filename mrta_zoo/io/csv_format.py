@@ -1,25 +1,33 @@
 """Scenarios as one CSV table: a header row, then one row for each task and robot, and maybe one for the map.
 
-Columns, in any order: ``kind`` (task, robot or map), ``x``, ``y``, ``deadline`` and ``workload`` of tasks,
-``capacity`` and ``speed`` (1 if empty) of robots, and optionally ``id`` (each of 0..N-1 once among the tasks,
-and likewise among the robots; without it rows count in order). A map row gives the width as x and the height
-as y; without one the map is the smallest square from the origin that holds everything and has a whole side.
+Columns, in any order: ``kind`` (task, robot, map or origin), ``x``, ``y``, ``deadline`` and ``workload`` of tasks,
+``capacity`` and ``speed`` (1 if empty) of robots, and optionally ``name`` (any text) and ``id``. Where the ids of the
+tasks are each of 0..N-1 once, they are their numbers; otherwise rows count in order and the ids are names. The same
+holds for the robots. A map row gives the width as x and the height as y, an origin row the map's lowest x and y; what
+the map is without them, `mrta_zoo.io.parts.assemble` says.
 """
 
 from __future__ import annotations
 
 import csv
 import io
+import math
 from pathlib import Path
 
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, in_id_order
-from mrta_zoo.io.source import StrPath, count, number, shown, write_text
+from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, in_id_order, place_in_file
+from mrta_zoo.io.source import StrPath, number, shown, write_text
 from mrta_zoo.io.table import read_table
 from mrta_zoo.scenario import Scenario
 
 COLUMNS = ("kind", "x", "y", "deadline", "workload", "capacity", "speed")
-_OF_KIND = {"task": ("deadline", "workload"), "robot": ("capacity", "speed"), "map": ()}
+NAMING = ("name", "id")
+_OF_KIND = {
+    "task": (*NAMING, "deadline", "workload"),
+    "robot": (*NAMING, "capacity", "speed"),
+    "map": (),
+    "origin": (),
+}
 
 
 def read_csv_part(path: StrPath) -> Part:
@@ -31,38 +39,45 @@ def read_csv_part(path: StrPath) -> Part:
     table = read_table(path, ScenarioError)
     header_where, header = table[0]
     _check_header(header_where, header)
-    tasks: list[tuple[int, TaskRow]] = []
-    robots: list[tuple[int, RobotRow]] = []
-    map_row: MapRow | None = None
+    tasks: list[tuple[str, TaskRow]] = []
+    robots: list[tuple[str, RobotRow]] = []
+    once: dict[str, tuple[str, float, float]] = {}
     for where, cells in table[1:]:
         row = dict(zip(header, cells, strict=True))
         kind = row["kind"]
         if kind not in _OF_KIND:
-            raise ScenarioError(f"{where}: kind is {shown(kind)}; expected task, robot or map")
+            raise ScenarioError(f"{where}: kind is {shown(kind)}; expected task, robot, map or origin")
         _check_empty(where, kind, row)
+        x, y = (_cell(row, where, what, 0 if kind == "map" else -math.inf, strict=kind == "map") for what in "xy")
+        number, name = row.get("id", ""), row.get("name", "")
         if kind == "task":
-            index = count(row["id"], where, "task id", ScenarioError) if "id" in row else len(tasks)
-            x, y, workload = (_cell(row, where, what) for what in ("x", "y", "workload"))
-            tasks.append((index, TaskRow(where, x, y, _cell(row, where, "deadline", strict=True), workload)))
+            deadline, workload = _cell(row, where, "deadline", strict=True), _cell(row, where, "workload")
+            tasks.append((number, TaskRow(where, x, y, deadline, workload, name)))
         elif kind == "robot":
-            index = count(row["id"], where, "robot id", ScenarioError) if "id" in row else len(robots)
-            x, y = _cell(row, where, "x"), _cell(row, where, "y")
             capacity = _cell(row, where, "capacity", strict=True)
             speed = _cell(row, where, "speed", strict=True) if row.get("speed") else 1.0
-            robots.append((index, RobotRow(where, x, y, capacity, speed)))
-        elif map_row is not None:
+            robots.append((number, RobotRow(where, x, y, capacity, speed, name)))
+        elif kind in once:
             raise ScenarioError(
-                f"{where}: a second map row, after {map_row.where.rpartition(', ')[2]}; expected at most one"
+                f"{where}: a second {kind} row, after {place_in_file(once[kind][0])}; expected at most one"
             )
         else:
-            map_row = MapRow(where, *(_cell(row, where, what, strict=True) for what in ("x", "y")))
+            once[kind] = where, x, y
     return Part(
         path=str(path),
         tasks=in_id_order(tasks, "task"),
         robots=in_id_order(robots, "robot"),
-        map=map_row,
+        map=_map(once),
         name=Path(path).stem,
     )
+
+
+def _map(once: dict[str, tuple[str, float, float]]) -> MapRow | None:
+    if "map" in once:
+        return MapRow(*once["map"], *once.get("origin", ())[1:])
+    if "origin" in once:
+        raise ScenarioError(f"{once['origin'][0]}: an origin row without a map row; expected both, or only a map row")
+    return None
 
 
 def write_csv(scenario: Scenario, path: StrPath) -> None:
@@ -71,28 +86,35 @@ def write_csv(scenario: Scenario, path: StrPath) -> None:
     Raises:
         ScenarioError: if the file cannot be written.
     """
+    named = scenario.task_names or scenario.robot_names
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    writer.writerow(["map", *scenario.map_size, "", "", "", ""])
-    for (x, y), deadline, workload in zip(
-        scenario.task_xy.tolist(), scenario.deadline.tolist(), scenario.workload.tolist(), strict=True
+
+    def write(kind: str, x: float, y: float, numbers: tuple[object, ...] = ("",) * 4, name: str = "") -> None:
+        writer.writerow((kind, x, y, *numbers, *([name] if named else ())))
+
+    writer.writerow((*COLUMNS, "name") if named else COLUMNS)
+    write("map", *scenario.map_size)
+    if scenario.map_origin != (0.0, 0.0):
+        write("origin", *scenario.map_origin)
+    for task, ((x, y), deadline, workload) in enumerate(
+        zip(scenario.task_xy.tolist(), scenario.deadline.tolist(), scenario.workload.tolist(), strict=True)
     ):
-        writer.writerow(["task", x, y, deadline, workload, "", ""])
-    for (x, y), capacity, speed in zip(
-        scenario.robot_xy.tolist(), scenario.capacity.tolist(), scenario.speed.tolist(), strict=True
+        write("task", x, y, (deadline, workload, "", ""), scenario.task_name(task) if scenario.task_names else "")
+    for robot, ((x, y), capacity, speed) in enumerate(
+        zip(scenario.robot_xy.tolist(), scenario.capacity.tolist(), scenario.speed.tolist(), strict=True)
     ):
-        writer.writerow(["robot", x, y, "", "", capacity, speed])
+        write("robot", x, y, ("", "", capacity, speed), scenario.robot_name(robot) if scenario.robot_names else "")
     write_text(stream.getvalue(), path, ScenarioError)
 
 
 def _check_header(where: str, header: list[str]) -> None:
-    allowed = (*COLUMNS, "id")
+    allowed = (*COLUMNS, *NAMING)
     for column in header:
         if column not in allowed:
             raise ScenarioError(
                 f"{where}: there is no column {shown(column)}; "
-                f"expected {', '.join(COLUMNS)} and maybe id, separated by commas"
+                f"expected {', '.join(COLUMNS)} and maybe name or id, separated by commas"
             )
         if header.count(column) > 1:
             raise ScenarioError(f"{where}: column {shown(column)} appears twice; expected each column once")
@@ -103,13 +125,13 @@ def _check_header(where: str, header: list[str]) -> None:
 
 def _check_empty(where: str, kind: str, row: dict[str, str]) -> None:
     """A value that its kind cannot have is a slip of columns more often than not."""
-    own = ("kind", "x", "y", *_OF_KIND[kind], *(("id",) if kind != "map" else ()))
+    own = ("kind", "x", "y", *_OF_KIND[kind])
     for column, cell in row.items():
         if cell and column not in own:
             raise ScenarioError(f"{where}: {column} of a {kind} is {shown(cell)}; expected an empty cell")
 
 
-def _cell(row: dict[str, str], where: str, what: str, strict: bool = False) -> float:
+def _cell(row: dict[str, str], where: str, what: str, least: float = 0, strict: bool = False) -> float:
     if not row.get(what):
         raise ScenarioError(f"{where}: {row['kind']} has no {what}; expected a number in column {what}")
-    return number(row[what], where, what, 0, ScenarioError, strict=strict)
+    return number(row[what], where, what, least, ScenarioError, strict=strict)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -22,29 +23,41 @@ NonNegative = Annotated[float, Meta(ge=0)]
 Index = Annotated[int, Meta(ge=0)]
 
 
+Name = Annotated[str, Meta(min_length=1)] | int
+
+
 class MapJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Size of the map in distance units; its corner is the origin."""
+    """Size of the map in distance units, and its lowest x and y.
+
+    Without these it begins at 0 and 0 or, if it would not hold every place then, at their least whole x and y.
+    """
 
     width: Positive
     height: Positive
+    x: float | None = None
+    y: float | None = None
 
 
 class TaskJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One task: its place, the latest finish that counts, and the work to be done."""
+    """One task: its place, the latest finish that counts, the work to be done, and its name or, instead, its id."""
 
-    x: NonNegative
-    y: NonNegative
+    x: float
+    y: float
     deadline: Positive
     workload: NonNegative
+    name: Name | None = None
+    id: Name | None = None
 
 
 class RobotJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One robot: its start, the work it does and the distance it travels per time unit."""
+    """One robot: its start, its work and its way per time unit, and its name or, instead, its id."""
 
-    x: NonNegative
-    y: NonNegative
+    x: float
+    y: float
     capacity: Positive
     speed: Positive = 1.0
+    name: Name | None = None
+    id: Name | None = None
 
 
 class ScenarioJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -113,19 +126,27 @@ def read_json_part(path: StrPath) -> Part:
 
 def json_part(path: StrPath, size: MapJson, tasks: Sequence[TaskJson], robots: Sequence[RobotJson], name: str) -> Part:
     """What any JSON file that holds a scenario says of it."""
+    x, y = (math.nan if corner is None else corner for corner in (size.x, size.y))
+    if math.isnan(x) != math.isnan(y):
+        raise ScenarioError(f"{path}: map has only one of x and y; expected both, or neither")
     return Part(
         path=str(path),
         tasks=tuple(
-            TaskRow(f"{path}: tasks[{index}]", task.x, task.y, task.deadline, task.workload)
+            TaskRow(f"{path}: tasks[{index}]", task.x, task.y, task.deadline, task.workload, _name(task))
             for index, task in enumerate(tasks)
         ),
         robots=tuple(
-            RobotRow(f"{path}: robots[{index}]", robot.x, robot.y, robot.capacity, robot.speed)
+            RobotRow(f"{path}: robots[{index}]", robot.x, robot.y, robot.capacity, robot.speed, _name(robot))
             for index, robot in enumerate(robots)
         ),
-        map=MapRow(f"{path}: map", size.width, size.height),
+        map=MapRow(f"{path}: map", size.width, size.height, x, y),
         name=name,
     )
+
+
+def _name(row: TaskJson | RobotJson) -> str:
+    given = row.id if row.name is None else row.name
+    return "" if given is None else str(given)
 
 
 def is_other_json(path: Path) -> bool:
@@ -162,12 +183,23 @@ def scenario_fields(scenario: Scenario) -> dict[str, Any]:
     """The fields that hold a scenario in any JSON file."""
     tasks = zip(scenario.task_xy.tolist(), scenario.deadline.tolist(), scenario.workload.tolist(), strict=True)
     robots = zip(scenario.robot_xy.tolist(), scenario.capacity.tolist(), scenario.speed.tolist(), strict=True)
+    corner = {} if scenario.map_origin == (0.0, 0.0) else dict(zip("xy", scenario.map_origin, strict=True))
     return {
         "name": scenario.name,
-        "map": {"width": scenario.map_size[0], "height": scenario.map_size[1]},
-        "tasks": [{"x": x, "y": y, "deadline": due, "workload": work} for (x, y), due, work in tasks],
-        "robots": [{"x": x, "y": y, "capacity": rate, "speed": speed} for (x, y), rate, speed in robots],
+        "map": {"width": scenario.map_size[0], "height": scenario.map_size[1], **corner},
+        "tasks": [
+            {**_named(scenario.task_names, index), "x": x, "y": y, "deadline": due, "workload": work}
+            for index, ((x, y), due, work) in enumerate(tasks)
+        ],
+        "robots": [
+            {**_named(scenario.robot_names, index), "x": x, "y": y, "capacity": rate, "speed": speed}
+            for index, ((x, y), rate, speed) in enumerate(robots)
+        ],
     }
+
+
+def _named(names: tuple[str, ...], index: int) -> dict[str, str]:
+    return {"name": names[index]} if names else {}
 
 
 def read_plan(path: StrPath) -> Plan:

@@ -2,41 +2,51 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
+import numpy as np
+
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.io.source import check_name
-from mrta_zoo.scenario import BOUNDS, LARGEST, SMALLEST, Scenario
+from mrta_zoo.io.source import check_name, shown
+from mrta_zoo.scenario import BOUNDS, LARGEST, SMALLEST, FloatArray, Scenario, map_origin_for
+
+_NUMBER = re.compile(r"[0-9]{1,18}")
 
 
 class TaskRow(NamedTuple):
-    """One task as read: where it stands ("file, line 3"), its place, deadline > 0 and workload >= 0."""
+    """One task as read: where it stands ("file, line 3"), its place, deadline > 0, workload >= 0, and maybe a name."""
 
     where: str
     x: float
     y: float
     deadline: float
     workload: float
+    name: str = ""
 
 
 class RobotRow(NamedTuple):
-    """One robot as read: where it stands ("file, line 3"), its start, capacity > 0 and speed > 0."""
+    """One robot as read: where it stands ("file, line 3"), its start, capacity > 0, speed > 0, and maybe a name."""
 
     where: str
     x: float
     y: float
     capacity: float
     speed: float
+    name: str = ""
 
 
 class MapRow(NamedTuple):
-    """The map as read: where it stands, its width > 0 and height > 0."""
+    """The map as read: where it stands, its width > 0 and height > 0, and its lowest x and y, NaN if not said."""
 
     where: str
     width: float
     height: float
+    x: float = math.nan
+    y: float = math.nan
 
 
 Row = TypeVar("Row", TaskRow, RobotRow)
@@ -66,8 +76,8 @@ class Part:
 def assemble(main: Part, agents: Part | None) -> Scenario:
     """The scenario of a file that has all, or of a file with tasks and another with the robots.
 
-    Without a map in either file it is the smallest square from the origin that holds every place and has a
-    whole side >= 1.
+    Without a map in either file it is the smallest square with a whole side >= 1 that holds every place from 0 and 0
+    on; or from their least whole x and y on, if one is negative, or that square would be more than twice as large.
 
     Raises:
         ScenarioError: if something is missing or said twice, a number is too small or large, or a place is outside
@@ -97,9 +107,13 @@ def assemble(main: Part, agents: Part | None) -> Scenario:
     for each in (main.map, *main.tasks, agents.map, *agents.robots):
         if each is not None:
             check_magnitudes(each)
-    map_size = _map_size(main, agents)
-    for rows in (main.tasks, agents.robots):
-        check_inside(rows, map_size)
+    rows: tuple[TaskRow | RobotRow, ...] = (*main.tasks, *agents.robots)
+    places = np.array([(row.x, row.y) for row in rows])
+    said = _map_of(main, agents)
+    size, origin = (said[1:3], said[3:]) if said else _square_around(places)
+    if any(map(math.isnan, origin)):
+        origin = map_origin_for(places, size)
+    check_inside(rows, size, origin)
     return Scenario(
         task_xy=[(row.x, row.y) for row in main.tasks],  # type: ignore[arg-type]
         deadline=[row.deadline for row in main.tasks],  # type: ignore[arg-type]
@@ -107,62 +121,109 @@ def assemble(main: Part, agents: Part | None) -> Scenario:
         robot_xy=[(row.x, row.y) for row in agents.robots],  # type: ignore[arg-type]
         capacity=[row.capacity for row in agents.robots],  # type: ignore[arg-type]
         speed=[row.speed for row in agents.robots],  # type: ignore[arg-type]
-        map_size=map_size,
+        map_size=size,
         name=main.name,
+        map_origin=origin,
+        task_names=_names(main.tasks, "task"),
+        robot_names=_names(agents.robots, "robot"),
     )
 
 
-def _map_size(main: Part, agents: Part) -> tuple[float, float]:
-    if main.map and agents.map and main.map[1:] != agents.map[1:]:
+def _map_of(main: Part, agents: Part) -> MapRow | None:
+    """What either file says of the map."""
+    if main.map and agents.map and repr(main.map[1:]) != repr(agents.map[1:]):  # as texts, in which NaN equals NaN
         raise ScenarioError(
-            f"{agents.map.where}: map is {agents.map.width:g} x {agents.map.height:g}; expected "
-            f"{main.map.width:g} x {main.map.height:g} as in {main.path}"
+            f"{agents.map.where}: map is {_map_text(agents.map)}; expected {_map_text(main.map)} as in {main.path}"
         )
-    named = main.map or agents.map
-    if named:
-        return named.width, named.height
-    rows: tuple[TaskRow | RobotRow, ...] = (*main.tasks, *agents.robots)
-    side = max(1.0, *(max(row.x, row.y) for row in rows))
-    return (float(-(-side // 1)),) * 2  # ceil that stays a float, however large
+    return main.map or agents.map
+
+
+def _map_text(row: MapRow) -> str:
+    return f"{row.width:g} x {row.height:g}" + ("" if math.isnan(row.x) else f" from {row.x:g}, {row.y:g}")
+
+
+def _square_around(places: FloatArray) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Size and origin of the map of a file that names none."""
+
+    def side(origin: FloatArray) -> float:
+        return max(1.0, float(np.ceil((places - origin).max())))  # which stays a float, however large
+
+    origin = np.zeros(2)
+    corner = np.floor(places.min(axis=0))
+    if corner.min() < 0 or side(origin) > 2 * side(corner):
+        origin = corner
+    return (side(origin),) * 2, (float(origin[0]), float(origin[1]))
+
+
+def _names(rows: Sequence[TaskRow | RobotRow], who: str) -> tuple[str, ...]:
+    """The names of rows, of which all have one or none has."""
+    if not any(row.name for row in rows):
+        return ()
+    first: dict[str, TaskRow | RobotRow] = {}
+    for row in rows:
+        if not row.name:
+            raise ScenarioError(f"{row.where}: this {who} has no name; expected one for each {who}, as others have one")
+        check_name(row.name, row.where, f"the {who}'s name", ScenarioError)
+        if row.name in first:
+            raise ScenarioError(
+                f"{row.where}: {who} name {shown(row.name)} was already used in "
+                f"{place_in_file(first[row.name].where)}; expected each name once"
+            )
+        first[row.name] = row
+    return tuple(first)
 
 
 def check_magnitudes(row: TaskRow | RobotRow | MapRow) -> None:
     """Raises ScenarioError for a number of a row that `Scenario` would refuse without saying where it stands."""
-    for what, value in zip(row._fields[1:], row[1:], strict=True):
-        may_be_zero = what in ("x", "y", "workload")
-        if not (may_be_zero or value >= SMALLEST) or value > LARGEST:
-            expected = f"a number from 0 to {LARGEST:g}" if may_be_zero else f"a number > 0{BOUNDS}"
+    for what, value in row._asdict().items():
+        if isinstance(value, str) or math.isnan(value):
+            continue
+        low = {"x": -LARGEST, "y": -LARGEST, "workload": 0.0}.get(what, SMALLEST)
+        if not low <= value <= LARGEST:
+            expected = f"a number > 0{BOUNDS}" if low == SMALLEST else f"a number from {low:g} to {LARGEST:g}"
             raise ScenarioError(f"{row.where}: {what} is {value!r}; expected {expected}")
 
 
-def check_inside(rows: Sequence[TaskRow | RobotRow], map_size: tuple[float, float]) -> None:
+def check_inside(
+    rows: Sequence[TaskRow | RobotRow], map_size: tuple[float, float], origin: tuple[float, float]
+) -> None:
     """Raises ScenarioError for the first row whose place is outside the map."""
     for row in rows:
-        for letter, value, side in (("x", row.x, map_size[0]), ("y", row.y, map_size[1])):
-            if not 0 <= value <= side:
+        for letter, value, low, side in zip("xy", (row.x, row.y), origin, map_size, strict=True):
+            if not low <= value <= low + side:
                 raise ScenarioError(
-                    f"{row.where}: {letter} is {value!r}; expected a number from 0 to {side!r}, inside the map"
+                    f"{row.where}: {letter} is {value!r}; expected a number from {low:g} to {low + side!r}, "
+                    "inside the map"
                 )
 
 
-def in_id_order(rows: Sequence[tuple[int, Row]], what: str) -> tuple[Row, ...]:
-    """The rows sorted by the ids they came with, which must be each of 0..N-1 once.
+def place_in_file(where: str) -> str:
+    """Where in its file something stands: "line 3" of "file, line 3"."""
+    return re.split(r"[:,] ", where)[-1]
+
+
+def in_id_order(rows: Sequence[tuple[str, Row]], what: str) -> tuple[Row, ...]:
+    """Rows with the ids they came with: sorted by them if they are each of 0..N-1 once, otherwise called by them.
+
+    Rows that have a name keep it.
 
     Raises:
-        ScenarioError: for an id out of range or met before; a gap always shows as one of the two.
+        ScenarioError: for an id met before, or missing where others have one.
     """
-    ordered: list[Row | None] = [None] * len(rows)
-    for index, row in rows:
-        if index >= len(rows):
+    ids = [given for given, _ in rows]
+    if not any(ids):
+        return tuple(row for _, row in rows)
+    numbers = [int(given) if _NUMBER.fullmatch(given) else given for given in ids]
+    first: dict[int | str, Row] = {}
+    for number, (given, row) in zip(numbers, rows, strict=True):
+        if not given:
+            raise ScenarioError(f"{row.where}: this {what} has no id; expected one for each {what}, as others have one")
+        if number in first:
             raise ScenarioError(
-                f"{row.where}: {what} id is {index}; expected each of 0 to {len(rows) - 1} once, "
-                f"as there are {len(rows)} {what}s"
-            )
-        earlier = ordered[index]
-        if earlier is not None:
-            raise ScenarioError(
-                f"{row.where}: {what} id {index} was already used in {earlier.where.rpartition(', ')[2]}; "
+                f"{row.where}: {what} id {shown(given)} was already used in {place_in_file(first[number].where)}; "
                 "expected each id once"
             )
-        ordered[index] = row
-    return tuple(row for row in ordered if row is not None)
+        first[number] = row
+    if set(numbers) == set(range(len(rows))):
+        return tuple(first[number] for number in range(len(rows)))
+    return tuple(row if row.name else row._replace(name=given) for given, row in rows)

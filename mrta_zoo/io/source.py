@@ -74,15 +74,15 @@ def write_text(text: str, path: StrPath, error: type[MrtaError]) -> None:
 
 
 def number(text: str, where: str, what: str, least: float, error: type[MrtaError], strict: bool = False) -> float:
-    """The number written as `text`, which must be >= `least` (> if `strict`) and finite.
+    """The number written as `text`, which must be finite and >= `least` (> if `strict`), which may be -infinity.
 
     Raises:
         error: if it is not; the message starts with `where` and calls the value `what`.
     """
     value = float(text) if _NUMBER.fullmatch(text) else math.nan
     if not math.isfinite(value) or value < least or (strict and value == least):
-        bound = f"{'>' if strict else '>='} {least:g}"
-        raise error(f"{where}: {what} is {shown(text)}; expected a finite number {bound}")
+        bound = "" if least == -math.inf else f" {'>' if strict else '>='} {least:g}"
+        raise error(f"{where}: {what} is {shown(text)}; expected a finite number{bound}")
     return value + 0.0
 
 

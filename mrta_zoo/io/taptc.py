@@ -1,20 +1,24 @@
 """Text files of the TAPTC benchmark (Mitiche, Boughaci, Gini 2019): one for the tasks, one for the agents.
 
 Task file: ``m dx dy`` or ``n m dx dy`` (m tasks, n agents, map dx x dy), then m lines
-``id x y workload deadline``. Agent file: ``n dx dy``, then n lines ``id x y capacity``. The ids are each of
-0..N-1 once, in any order, and become the indices. Every robot has speed 1.
+``id x y workload deadline``. Agent file: ``n dx dy``, then n lines ``id x y capacity``. Where the ids are each of
+0..N-1 once, in any order, they are the numbers of the tasks or robots; otherwise lines count in order and the ids are
+names. Where the map lies, if not at 0 and 0, `mrta_zoo.scenario.map_origin_for` says. Every robot has speed 1.
 """
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from pathlib import Path
 
+import numpy as np
+
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, assemble, in_id_order
 from mrta_zoo.io.source import StrPath, count, number, read_text, shown, write_text
-from mrta_zoo.scenario import Scenario
+from mrta_zoo.scenario import Scenario, map_origin_for
 
 _CASE_NAME = re.compile(r"r[0-9]+(a[0-9]+i[0-9]+)")
 _TASK_LINE = "id x y workload deadline"
@@ -72,13 +76,12 @@ def read_task_part(path: StrPath) -> Part:
     for where, fields in lines:
         hint = "; is this an agent file?" if len(fields) == 4 else ""
         _check_fields(where, fields, _TASK_LINE, hint)
-        x, y, workload = (
-            number(text, where, what, 0, ScenarioError)
-            for text, what in zip(fields[1:4], ("x", "y", "workload"), strict=True)
+        x, y = (
+            number(text, where, what, -math.inf, ScenarioError) for text, what in zip(fields[1:3], "xy", strict=True)
         )
+        workload = number(fields[3], where, "workload", 0, ScenarioError)
         deadline = number(fields[4], where, "deadline", 0, ScenarioError, strict=True)
-        index = count(fields[0], where, "task id", ScenarioError)
-        rows.append((index, TaskRow(where, x, y, deadline, workload)))
+        rows.append((fields[0], TaskRow(where, x, y, deadline, workload)))
     _check_count(path, first, num_tasks, len(rows), "task")
     return Part(
         path=str(path),
@@ -107,10 +110,11 @@ def read_agent_part(path: StrPath) -> Part:
     for where, fields in lines:
         hint = "; is this a task file?" if len(fields) == 5 else ""
         _check_fields(where, fields, _AGENT_LINE, hint)
-        x, y = (number(text, where, what, 0, ScenarioError) for text, what in zip(fields[1:3], "xy", strict=True))
+        x, y = (
+            number(text, where, what, -math.inf, ScenarioError) for text, what in zip(fields[1:3], "xy", strict=True)
+        )
         capacity = number(fields[3], where, "capacity", 0, ScenarioError, strict=True)
-        index = count(fields[0], where, "agent id", ScenarioError)
-        rows.append((index, RobotRow(where, x, y, capacity, 1.0)))
+        rows.append((fields[0], RobotRow(where, x, y, capacity, 1.0)))
     _check_count(path, first, num_robots, len(rows), "agent")
     return Part(path=str(path), robots=in_id_order(rows, "agent"), map=_map(first, header), name=Path(path).stem)
 
@@ -119,7 +123,9 @@ def write_taptc(scenario: Scenario, task_path: StrPath, agent_path: StrPath) -> 
     """Write a scenario as a task file and an agent file, exactly; its name is then the task file's.
 
     Raises:
-        ScenarioError: if a speed is not 1, which the format cannot express, or a file cannot be written.
+        ScenarioError: if a speed is not 1, a name is no single word or a number that would be read as a task's or
+            robot's, or the map lies where it would not be found again, all of which the format cannot express; or if
+            a file cannot be written.
     """
     for robot, speed in enumerate(scenario.speed):
         if speed != 1:
@@ -127,17 +133,43 @@ def write_taptc(scenario: Scenario, task_path: StrPath, agent_path: StrPath) -> 
                 f"{task_path}: robot {robot} has speed {speed:g}; expected 1, "
                 "as TAPTC files hold no speeds (JSON and CSV do)"
             )
+    places = np.concatenate((scenario.task_xy, scenario.robot_xy))
+    if map_origin_for(places, scenario.map_size) != scenario.map_origin:
+        x, y = scenario.map_origin
+        raise ScenarioError(
+            f"{task_path}: the map begins at {x:g}, {y:g}; expected one that begins at 0, 0 or at the least whole x "
+            "and y of all places, as TAPTC files do not say where it lies (JSON and CSV do)"
+        )
+    task_ids = _ids(scenario.task_names, scenario.num_tasks, "task", task_path)
+    robot_ids = _ids(scenario.robot_names, scenario.num_robots, "robot", task_path)
     side = " ".join(_text(value) for value in scenario.map_size)
     tasks = [f"{scenario.num_robots} {scenario.num_tasks} {side}"]
-    for index, ((x, y), workload, deadline) in enumerate(
-        zip(scenario.task_xy, scenario.workload, scenario.deadline, strict=True)
+    for name, (x, y), workload, deadline in zip(
+        task_ids, scenario.task_xy, scenario.workload, scenario.deadline, strict=True
     ):
-        tasks.append(" ".join([str(index), *map(_text, (x, y, workload, deadline))]))
+        tasks.append(" ".join([name, *map(_text, (x, y, workload, deadline))]))
     agents = [f"{scenario.num_robots} {side}"]
-    for index, ((x, y), capacity) in enumerate(zip(scenario.robot_xy, scenario.capacity, strict=True)):
-        agents.append(" ".join([str(index), *map(_text, (x, y, capacity))]))
+    for name, (x, y), capacity in zip(robot_ids, scenario.robot_xy, scenario.capacity, strict=True):
+        agents.append(" ".join([name, *map(_text, (x, y, capacity))]))
     write_text("\n".join(agents) + "\n", agent_path, ScenarioError)
     write_text("\n".join(tasks) + "\n", task_path, ScenarioError)
+
+
+def _ids(names: tuple[str, ...], count: int, who: str, path: StrPath) -> list[str]:
+    """What the lines of the tasks, or of the robots, begin with."""
+    numbers = [str(index) for index in range(count)]
+    if set(names) == set(numbers):
+        raise ScenarioError(
+            f"{path}: the names of the {who}s are the numbers 0 to {count - 1} in another order; expected other names, "
+            "as TAPTC files would number them by these (JSON and CSV do not)"
+        )
+    for name in names:
+        if name.split() != [name]:
+            raise ScenarioError(
+                f"{path}: a {who} is called {shown(name)}; expected a name without blanks, as TAPTC files cannot hold "
+                "one (JSON and CSV do)"
+            )
+    return list(names) or numbers
 
 
 def _lines(path: StrPath) -> list[tuple[str, list[str]]]:

@@ -22,8 +22,8 @@ BAD_CSV = [
     ("kind,x,y,deadline,workload\ntask,1,2,3,4\n", "has 0 robots; expected at least one"),
     ("kind,x,y,capacity\nrobot,1,2,3\n", "has 0 tasks; expected at least one"),
     ("kind,x,y,capacity\ntask,1,2,3\n", "line 2: capacity of a task is '3'; expected an empty cell"),
-    ("kind,x,y,capacity\ntask,1,2,\n", "line 2: task has no workload; expected a number in column workload"),
-    (TABLE.replace("task,3,4", "depot,3,4"), "line 4: kind is 'depot'; expected task, robot or map"),
+    ("kind,x,y,capacity\ntask,1,2,\n", "line 2: task has no deadline; expected a number in column deadline"),
+    (TABLE.replace("task,3,4", "depot,3,4"), "line 4: kind is 'depot'; expected task, robot, map or origin"),
     (
         TABLE.replace("100,20,,", "100,20,"),
         "line 4: 'task,3,4,100,20,' has 6 cells; expected 7 as in the header",
@@ -41,7 +41,11 @@ BAD_CSV = [
     (TABLE.replace("100,20,,", "1_0,20,,"), "line 4: deadline is '1_0'; expected a finite number > 0"),
     (TABLE.replace("100,20,,", "100,-1,,"), "line 4: workload is '-1'; expected a finite number >= 0"),
     (TABLE.replace("task,3", "task,300"), "line 4: x is 300.0; expected a number from 0 to 100"),
-    (TABLE.replace("task,3", "task,-3"), "line 4: x is '-3'; expected a finite number >= 0"),
+    (TABLE.replace("task,3", "task,-103"), "line 4: x is -103.0; expected a number from 0 to 100"),
+    (TABLE.replace("task,3", "task,three"), "line 4: x is 'three'; expected a finite number"),
+    (TABLE + "origin,-1,-1,,,,\norigin,-1,-1,,,,\n", "line 7: a second origin row, after line 6; expected at most one"),
+    (TABLE.replace("map,100,50", "origin,0,0"), "line 2: an origin row without a map row; expected both"),
+    (TABLE + "origin,2,0,,,,\n", "line 3: x is 1.0; expected a number from 2 to 102"),
     (TABLE.replace("2,1\n", "0,1\n"), "line 5: capacity is '0'; expected a finite number > 0"),
     (TABLE.replace("2,1\n", ",1\n"), "line 5: robot has no capacity; expected a number in column capacity"),
     (TABLE.replace("2,1\n", "2,0\n"), "line 5: speed is '0'; expected a finite number > 0"),
@@ -54,16 +58,28 @@ BAD_CSV = [
         "line 4: field larger than field limit (131072); expected",
     ),
     (
-        "id,kind,x,y,deadline,workload,capacity\n1,task,1,1,1,1,\n0,robot,1,1,,,1\n",
-        "line 2: task id is 1; expected",
+        "id,kind,x,y,deadline,workload,capacity\n1,task,1,1,1,1,\n1,task,1,1,1,1,\n0,robot,1,1,,,1\n",
+        "line 3: task id '1' was already used in line 2; expected each id once",
     ),
     (
-        "id,kind,x,y,deadline,workload,capacity\n,task,1,1,1,1,\n0,robot,1,1,,,1\n",
-        "line 2: task id is ''; expected",
+        "id,kind,x,y,deadline,workload,capacity\n,task,1,1,1,1,\n0,task,1,1,1,1,\n0,robot,1,1,,,1\n",
+        "line 2: this task has no id; expected one for each task",
     ),
     (
         "id,kind,x,y,deadline,workload,capacity\n0,map,1,1,,,\n",
         "line 2: id of a map is '0'; expected an empty",
+    ),
+    (
+        "name,kind,x,y,deadline,workload,capacity\npump,task,1,1,1,1,\n,task,1,1,1,1,\n,robot,1,1,,,1\n",
+        "line 3: this task has no name; expected one for each task",
+    ),
+    (
+        "name,kind,x,y,deadline,workload,capacity\npump,task,1,1,1,1,\npump,task,1,1,1,1,\n,robot,1,1,,,1\n",
+        "line 3: task name 'pump' was already used in line 2; expected each name once",
+    ),
+    (
+        "name,kind,x,y,deadline,workload,capacity\npu\x07mp,task,1,1,1,1,\n,robot,1,1,,,1\n",
+        "line 2: the task's name is 'pu\\x07mp'; expected text without control characters",
     ),
     (b"kind,x,y\n\xff", "line 2: byte 0xff is not UTF-8; expected UTF-8 text"),
     (b"kind,x,y\n\0", "line 2: holds the byte 0x00, as binary files do; expected text"),
@@ -103,5 +119,7 @@ def test_bad_agent_table(tmp_path: Path, content: str, message: str) -> None:
 def test_a_table_without_a_map_cannot_have_far_places(tmp_path: Path) -> None:
     path = tmp_path / "cas.csv"
     path.write_text(TABLE.replace("map,100,50,,,,\n", "").replace("task,3,4", "task,3,4e12"))
-    with pytest.raises(ScenarioError, match=r"cas\.csv, line 3: y is 4000000000000\.0; expected a number from 0 to 1e"):
+    with pytest.raises(
+        ScenarioError, match=r"cas\.csv, line 3: y is 4000000000000\.0; expected a number from -1e\+12 to 1e"
+    ):
         read_scenario(path)

@@ -34,7 +34,7 @@ BAD_TASKS = [
     ),
     (TASKS.replace("1 3 4 20 100", "1 3 4 20 100 7"), "line 3: '1 3 4 20 100 7' has 6 fields; expected 5"),
     (TASKS[:-8], "line 4: '2 5' has 2 fields; expected 5"),
-    (TASKS.replace("1 3 4 20", "1 three 4 20"), "line 3: x is 'three'; expected a finite number >= 0"),
+    (TASKS.replace("1 3 4 20", "1 three 4 20"), "line 3: x is 'three'; expected a finite number"),
     (TASKS.replace("1 3 4 20", "1 3 0x4 20"), "line 3: y is '0x4'; expected"),
     (TASKS.replace("1 3 4 20", "1 3 4 2_0"), "line 3: workload is '2_0'; expected a finite number >= 0"),
     (TASKS.replace("1 3 4 20", "1 3 4 -20"), "line 3: workload is '-20'; expected a finite number >= 0"),
@@ -53,14 +53,11 @@ BAD_TASKS = [
     (TASKS.replace("255", "9" * 1000), "line 2: deadline is '999"),
     (
         TASKS.replace("2 5 6 20", "1 5 6 20"),
-        "line 4: task id 1 was already used in line 3; expected each id once",
+        "line 4: task id '1' was already used in line 3; expected each id once",
     ),
-    (TASKS.replace("2 5 6 20", "3 5 6 20"), "line 4: task id is 3; expected each of 0 to 2 once"),
-    (TASKS.replace("2 5 6 20", "-2 5 6 20"), "line 4: task id is '-2'; expected a whole number"),
-    (TASKS.replace("2 5 6 20", "2.0 5 6 20"), "line 4: task id is '2.0'; expected a whole number"),
     (TASKS.replace("2 5 6 20", "2 101 6 20"), "line 4: x is 101.0; expected a number from 0 to 100"),
     (TASKS.replace("2 5 6 20", "2 5 50.5 20"), "line 4: y is 50.5; expected a number from 0 to 50"),
-    (TASKS.replace("2 5 6 20", "2 5 -1 20"), "line 4: y is '-1'; expected a finite number >= 0"),
+    (TASKS.replace("2 5 6 20", "2 5 -45 20"), "line 4: y is -45.0; expected a number from 0 to 50"),
     (
         AGENTS,
         "line 2: '0 9 10 2.0' has 4 fields; expected 5 (id x y workload deadline); is this an agent file?",
@@ -105,9 +102,8 @@ BAD_AGENTS = [
     (AGENTS.replace(" 2.0", ""), "line 2: '0 9 10' has 3 fields; expected 4 (id x y capacity)"),
     (
         AGENTS.replace("1 7 8", "0 7 8"),
-        "line 3: agent id 0 was already used in line 2; expected each id once",
+        "line 3: agent id '0' was already used in line 2; expected each id once",
     ),
-    (AGENTS.replace("1 7 8", "2 7 8"), "line 3: agent id is 2; expected each of 0 to 1 once"),
     (AGENTS.replace("1 7 8", "1 700 8"), "line 3: x is 700.0; expected a number from 0 to 100"),
 ]
 

@@ -1,0 +1,107 @@
+"""Names of tasks and robots in each kind of file."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mrta_zoo.errors import ScenarioError
+from mrta_zoo.io import read_scenario, write_scenario, write_taptc
+from mrta_zoo.scenario import Scenario
+
+NAMED = Scenario(
+    task_xy=[[1, 2], [3, 4]],
+    deadline=[50, 60],
+    workload=[5, 6],
+    robot_xy=[[7, 8]],
+    capacity=[2],
+    name="cas",
+    task_names=("valve-A", "17"),
+    robot_names=("Ann",),
+)
+
+
+@pytest.mark.parametrize("suffix", [".json", ".csv", ".txt"])
+def test_names_are_kept(tmp_path: Path, suffix: str) -> None:
+    path = tmp_path / "group1" / f"cas{suffix}"
+    path.parent.mkdir()
+    (tmp_path / "agent").mkdir()
+    write_scenario(NAMED, path)
+    assert read_scenario(path) == NAMED
+
+
+@pytest.mark.parametrize("field", ["id", "name"])
+def test_json_takes_texts_and_numbers_as_names(tmp_path: Path, field: str) -> None:
+    path = tmp_path / "cas.json"
+    path.write_text(
+        '{"format": "mrta_zoo.scenario", "version": 1, "map": {"width": 9, "height": 9}, "tasks": ['
+        f'{{"{field}": "pump", "x": 1, "y": 1, "deadline": 9, "workload": 1}}, '
+        f'{{"{field}": 17, "x": 1, "y": 1, "deadline": 9, "workload": 1}}], '
+        f'"robots": [{{"{field}": "Ann", "x": 1, "y": 1, "capacity": 1}}]}}'
+    )
+    scenario = read_scenario(path)
+    assert (scenario.task_names, scenario.robot_names) == (("pump", "17"), ("Ann",))
+
+
+def test_ids_of_a_table_are_numbers_where_they_can_be(tmp_path: Path) -> None:
+    path = tmp_path / "cas.csv"
+    path.write_text(
+        "kind,id,x,y,deadline,workload,capacity\ntask,1,5,5,50,1,\ntask,0,6,6,60,1,\nrobot,R2,1,1,,,1\nrobot,D2,2,2,,,1\n"
+    )
+    scenario = read_scenario(path)
+    assert scenario.task_names == ()
+    assert scenario.deadline.tolist() == [60, 50]
+    assert scenario.robot_names == ("R2", "D2")
+    assert scenario.robot_xy.tolist() == [[1, 1], [2, 2]]
+
+
+def test_ids_of_taptc_that_are_no_numbering_are_names(tmp_path: Path) -> None:
+    (tmp_path / "cas.txt").write_text("1 2 100 50\n1 3 4 20 100\n2 5 6 20 200\n")
+    (tmp_path / "bots.txt").write_text("1 100 50\nD2 9 10 2\n")
+    scenario = read_scenario(tmp_path / "cas.txt", tmp_path / "bots.txt")
+    assert (scenario.task_names, scenario.robot_names) == (("1", "2"), ("D2",))
+    assert scenario.deadline.tolist() == [100, 200]
+
+
+@pytest.mark.parametrize(
+    ("names", "message"),
+    [(("valve A", "17"), "without blanks"), (("1", "0"), "in another order")],
+)
+def test_names_that_taptc_cannot_hold(tmp_path: Path, names: tuple[str, ...], message: str) -> None:
+    scenario = Scenario(NAMED.task_xy, NAMED.deadline, NAMED.workload, NAMED.robot_xy, NAMED.capacity, task_names=names)
+    with pytest.raises(ScenarioError, match=message):
+        write_taptc(scenario, tmp_path / "cas.txt", tmp_path / "bots.txt")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("shift", [(-50, -60), (512_000, 5_403_000)])
+@pytest.mark.parametrize("suffix", [".json", ".csv", ".txt"])
+def test_the_map_may_lie_anywhere(tmp_path: Path, suffix: str, shift: tuple[int, int]) -> None:
+    moved = Scenario(
+        NAMED.task_xy + np.array(shift),
+        NAMED.deadline,
+        NAMED.workload,
+        NAMED.robot_xy + np.array(shift),
+        NAMED.capacity,
+        map_size=(20, 10),
+        name="cas",
+    )
+    assert moved.map_origin == (shift[0] + 1, shift[1] + 2)  # the least whole x and y: task 0 is at 1, 2
+    path = tmp_path / "group1" / f"cas{suffix}"
+    path.parent.mkdir()
+    (tmp_path / "agent").mkdir()
+    write_scenario(moved, path)
+    assert read_scenario(path) == moved
+
+
+def test_a_map_is_put_around_places_where_a_table_has_none(tmp_path: Path) -> None:
+    path = tmp_path / "cas.csv"
+
+    def read(dx: float) -> Scenario:
+        path.write_text(f"kind,x,y,deadline,workload,capacity\ntask,{dx + 7.5},3,9,1,\nrobot,{dx + 2.5},1,,,1\n")
+        return read_scenario(path)
+
+    assert (read(0).map_size, read(0).map_origin) == ((8, 8), (0, 0))
+    assert (read(-20).map_size, read(-20).map_origin) == ((6, 6), (-18, 1))  # x from -17.5 to -12.5
+    assert (read(600).map_size, read(600).map_origin) == ((6, 6), (602, 1))
+    assert (read(2).map_size, read(2).map_origin) == ((10, 10), (0, 0))  # 10 is no more than twice 6
