@@ -6,7 +6,7 @@ equal, decision by decision.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -16,6 +16,7 @@ from torch import Tensor
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.rules import MaskRule, check_mask_rule, finish_time, may_choose, task_cost, travel_time
+from mrta_zoo.scales import Scales
 from mrta_zoo.scenario import Scenario
 
 
@@ -32,7 +33,7 @@ class ScenarioBatch:
         capacity: (B, M) capacities; padding is 1.
         speed: (B, M) speeds; padding is 1.
         robot_exists: (B, M) bool.
-        map_size: (B, 2) width and height.
+        scales: by what networks have them divided; (B,) or (B, 2).
     """
 
     task_xy: Tensor
@@ -43,7 +44,7 @@ class ScenarioBatch:
     capacity: Tensor
     speed: Tensor
     robot_exists: Tensor
-    map_size: Tensor
+    scales: Scales
 
     @classmethod
     def of(
@@ -90,7 +91,7 @@ class ScenarioBatch:
             capacity=stack("capacity", m, 1.0),
             speed=stack("speed", m, 1.0),
             robot_exists=exists([s.num_robots for s in scenarios], m),
-            map_size=torch.tensor([s.map_size for s in scenarios], dtype=torch.float64, device=device),
+            scales=_stacked_scales(scenarios, device),
         )
 
     def __len__(self) -> int:
@@ -113,15 +114,28 @@ class ScenarioBatch:
 
     def to(self, device: torch.device | str) -> ScenarioBatch:
         """The same scenarios on another device."""
-        return ScenarioBatch(*(getattr(self, f.name).to(device) for f in fields(self)))
+        return self._each(lambda rows: rows.to(device))
 
     def repeat(self, times: int) -> ScenarioBatch:
         """Each scenario `times` times in a row: rows k·times … (k+1)·times − 1 are scenario k."""
-        return ScenarioBatch(*(getattr(self, f.name).repeat_interleave(times, 0) for f in fields(self)))
+        return self._each(lambda rows: rows.repeat_interleave(times, 0))
 
     def select(self, rows: Tensor) -> ScenarioBatch:
         """Some of the scenarios, by (R,) int64 row numbers."""
-        return ScenarioBatch(*(getattr(self, f.name)[rows] for f in fields(self)))
+        return self._each(lambda every: every[rows])
+
+    def _each(self, change: Callable[[Tensor], Tensor]) -> ScenarioBatch:
+        tensors = [change(getattr(self, field.name)) for field in fields(self)[:-1]]
+        return ScenarioBatch(*tensors, self.scales.each(change))
+
+
+def _stacked_scales(scenarios: Sequence[Scenario], device: torch.device | str) -> Scales:
+    scales = [Scales.of(scenario) for scenario in scenarios]
+
+    def stack(name: str) -> Tensor:
+        return torch.from_numpy(np.array([getattr(each, name) for each in scales])).to(device)
+
+    return Scales(*(stack(field.name) for field in fields(Scales)))
 
 
 class BatchMission:

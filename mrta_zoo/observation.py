@@ -1,13 +1,8 @@
 """What a robot sees: the mission as bounded, scale-free float32 arrays.
 
-Everything is divided by a scale of the scenario, so that every number lies in [0, 1]:
-
-=========  ==========================================================================================
-places     divided by L, the longer side of the map
-times      divided by T, the latest deadline; later times show as 1 (nothing can be completed after T)
-workloads  divided by W, the largest workload
-capacity   divided by C, the largest capacity; speed by V, the largest speed
-=========  ==========================================================================================
+Everything is divided by a scale of the scenario (`mrta_zoo.scales`: L, T, W, C, V), so that every number lies in
+[0, 1]: places are counted from the lowest corner of the mission's frame in L, times in T, workloads in W, capacities in
+C and speeds in V. What is larger than its scale shows as 1.
 
 The ``mission`` array carries what relates these scales: L/V/T, the time the fastest robot takes to cross the map,
 and W/C/T, the time the strongest takes for the largest workload. These ratios r >= 0 are shown as r/(1 + r).
@@ -32,7 +27,6 @@ To add a feature, widen a table here and fill its column in `Observer`; policies
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -40,6 +34,7 @@ import numpy.typing as npt
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.mission import Mission
+from mrta_zoo.scales import Scales
 from mrta_zoo.scenario import Scenario
 
 if TYPE_CHECKING:  # imported where spaces are made: networks are trained on machines without Gymnasium
@@ -54,40 +49,6 @@ Observation = dict[str, Any]
 """``{"observation": {"tasks", "robots", "ego", "mission"}, "action_mask"}``, see the module's docstring."""
 
 FloatTable = npt.NDArray[np.float32]
-
-
-@dataclass(frozen=True, slots=True)
-class Scales:
-    """By what a scenario's quantities are divided. Fields are floats, or (B,) tensors for a batch."""
-
-    length: Any
-    time: Any
-    work: Any
-    capacity: Any
-    speed: Any
-
-    @classmethod
-    def of(cls, scenario: Scenario) -> Scales:
-        """The scales of one scenario."""
-        return cls(
-            length=max(scenario.map_size),
-            time=float(scenario.deadline.max()),
-            work=float(scenario.workload.max()) or 1.0,
-            capacity=float(scenario.capacity.max()),
-            speed=float(scenario.speed.max()),
-        )
-
-    @property
-    def crossing_ratio(self) -> Any:
-        """L/V/T squashed to [0, 1)."""
-        ratio = self.length / self.speed / self.time
-        return ratio / (1 + ratio)
-
-    @property
-    def work_ratio(self) -> Any:
-        """W/C/T squashed to [0, 1)."""
-        ratio = self.work / self.capacity / self.time
-        return ratio / (1 + ratio)
 
 
 def observation_space(max_tasks: int, max_robots: int, num_actions: int | None = None) -> spaces.Dict:
@@ -162,11 +123,11 @@ class Observer:
         self._seen = np.zeros(self._layout[-1], dtype=np.float32)
         self._looked_at: Mission | None = None
         self._bind()
-        self._tasks[:n, 0:2] = scenario.task_xy / scales.length
-        self._tasks[:n, 2] = scenario.deadline / scales.time
-        self._tasks[:n, 3] = scenario.workload / scales.work
-        self._robots[:m, 2] = scenario.capacity / scales.capacity
-        self._robots[:m, 3] = scenario.speed / scales.speed
+        self._tasks[:n, 0:2] = (scenario.task_xy - scales.origin) / scales.length
+        self._tasks[:n, 2] = np.minimum(scenario.deadline / scales.time, 1.0)
+        self._tasks[:n, 3] = np.minimum(scenario.workload / scales.work, 1.0)
+        self._robots[:m, 2] = np.minimum(scenario.capacity / scales.capacity, 1.0)
+        self._robots[:m, 3] = np.minimum(scenario.speed / scales.speed, 1.0)
         self._mission[1:] = scales.crossing_ratio, scales.work_ratio
 
     def observe(self, mission: Mission, robot: int) -> Observation:
@@ -191,7 +152,7 @@ class Observer:
         for robot, route in enumerate(mission.routes):
             if len(route) != self._last_taken[robot]:
                 self._last_taken[robot] = len(route)
-                self._robots[robot, 0:2] = mission.position[robot] / scales.length
+                self._robots[robot, 0:2] = (mission.position[robot] - scales.origin) / scales.length
                 self._robots[robot, 4] = min(mission.ready[robot] / scales.time, 1.0)
         if mission.retired != self._last_retired:
             self._last_retired = list(mission.retired)

@@ -10,12 +10,15 @@ import numpy as np
 
 from mrta_zoo.mission import Mission
 from mrta_zoo.plan import Plan
+from mrta_zoo.scales import frame_of, slack_time
 from mrta_zoo.scenario import FloatArray, Scenario
 
 RANGE = 1e4
 """How far robots can go, in sides of the map: 1e6 on a map of side 100, as the authors set it for TAPTC."""
 TIME_SCALE = 1.1
 """T of the weights, in latest deadlines."""
+MOST_TIMES = 100.0
+"""f / T counts as no more, so that no weight vanishes."""
 MATCHED = 10.0
 """Added to the weights of a robot that must be matched. No matching of the others weighs as much per robot: they lose
 at most one match, of weight 1, when it gets one."""
@@ -28,9 +31,9 @@ class BigMrtaSolver:
     it at a time f by its deadline. It weighs (range - distance) · exp(-f / T). With the authors' range for
     TAPTC, 1e6 on a map of side 100, the first factor varies by 1.4e-4, so that in effect what is finished soonest
     weighs most. We keep it, and both constants in proportion to the scenario, so that units do not matter: the range
-    is `RANGE` times the map's longer side, T is `TIME_SCALE` times the latest deadline (which the authors cut to a
-    whole number of time units). Weights are divided by the range, which changes no matching; as f <= T / 1.1 they lie
-    between 0.4 and 1.
+    is `RANGE` times the longer side of its frame (`mrta_zoo.scales`), T is `TIME_SCALE` times the latest deadline that
+    can bind (the authors take the latest, cut to a whole number of time units). Weights are divided by the range,
+    which changes no matching; where no deadline is later, f <= T / 1.1, and they lie between 0.4 and 1.
 
     Two things differ from the published code, which turns missing edges into edges of weight 0, may match a robot
     to a task that it can only finish late, and counts it as done. Here such matches are dropped. A robot that the
@@ -41,24 +44,26 @@ class BigMrtaSolver:
     def solve(self, scenario: Scenario) -> Plan:
         """A plan for `scenario`."""
         mission = Mission(scenario)
+        length = RANGE * float(frame_of(scenario)[1].max())
+        time = TIME_SCALE * float(scenario.deadline[scenario.deadline <= slack_time(scenario)].max())
         weights = np.empty((scenario.num_robots, scenario.num_tasks))
         for robot in range(scenario.num_robots):
-            weights[robot] = _weights(mission, robot)
+            weights[robot] = _weights(mission, robot, length, time)
         while not mission.done:
             robot = mission.actor
             task = _match(weights, robot)
             mission.assign(task)
             weights[:, task] = 0.0
-            weights[robot] = _weights(mission, robot)
+            weights[robot] = _weights(mission, robot, length, time)
         return Plan.of(mission.routes, scenario.name, "big-mrta")
 
 
-def _weights(mission: Mission, robot: int) -> FloatArray:
-    """(N,) what each task weighs for a robot, from 0.4 to 1; 0 if it is taken, or cannot be finished in time."""
+def _weights(mission: Mission, robot: int, length: float, time: float) -> FloatArray:
+    """(N,) what each task weighs for a robot, > 0 and at most 1; 0 if it is taken, or cannot be finished in time."""
     scenario = mission.scenario
     distance = np.hypot(*(scenario.task_xy - mission.position[robot]).T)
-    near = 1.0 - distance / (RANGE * max(scenario.map_size))
-    soon = np.exp(-mission.finish_if[robot] / (TIME_SCALE * scenario.deadline.max()))
+    near = 1.0 - distance / length
+    soon = np.exp(-np.minimum(mission.finish_if[robot] / time, MOST_TIMES))
     weights: FloatArray = np.where(mission.mask(robot), near * soon, 0.0)
     return weights
 

@@ -18,11 +18,12 @@ from mrta_zoo.plan import Plan
 from mrta_zoo.policies.exact.task_sets import IntArray, within_reach
 from mrta_zoo.policies.on_time import Routes, on_time
 from mrta_zoo.rules import travel_time
+from mrta_zoo.scales import Scales
 from mrta_zoo.scenario import Scenario
 
 BUDGET = 5.0
 RESOLUTION = 10**7
-"""Model time units until the latest deadline."""
+"""Model time units until the latest deadline that can bind, see `mrta_zoo.scales.slack_time`."""
 WARPS = (2e-5, 2e-6, 2e-4)
 """What a model time unit of lateness costs at most during the search, in prizes. A search starts at half of it and
 adapts it, so that it passes through plans that are late, but finds some that are not. The first value is the best for
@@ -42,6 +43,9 @@ class PyVrpSolver:
     optional client with a deadline and a prize. The travel time costs, too: the search needs it to tell routes with
     as many tasks apart, and finds far more tasks with it. The prize is larger than all that robots can travel in
     time, so that one more task is always worth it.
+
+    No task is planned to end later than at the time by which all that can wait could be done at leisure: that costs
+    no task, and leaves the durations their digits where one deadline is far beyond all others.
 
     PyVRP counts in integers. Durations are rounded down and deadlines up, so that what is in time in floating-point
     arithmetic is in time there, also where a deadline is met exactly. What only the model finds in time is dropped
@@ -117,7 +121,7 @@ def _model(scenario: Scenario, tasks: IntArray, prize: int) -> Any:
 
     end = scenario.num_robots
     places = np.concatenate([scenario.robot_xy, np.zeros((1, 2)), scenario.task_xy[tasks]])
-    latest = scenario.deadline.max()
+    latest = Scales.of(scenario).time
     kinds: dict[tuple[float, float], int] = {}
     travels: list[Any] = []
     durations: list[Any] = []
@@ -132,7 +136,7 @@ def _model(scenario: Scenario, tasks: IntArray, prize: int) -> Any:
             travels.append(_units(travel, latest, end))
             durations.append(_units(travel + work, latest, end))
         vehicles.append(VehicleType(start_depot=robot, end_depot=end, profile=kinds[speed, capacity]))
-    deadlines = np.floor(scenario.deadline[tasks] / latest * RESOLUTION).astype(np.int64) + 1
+    deadlines = np.floor(np.minimum(scenario.deadline[tasks] / latest, 1.0) * RESOLUTION).astype(np.int64) + 1
     return ProblemData(
         [Location(x, y) for x, y in places.tolist()],
         [

@@ -27,7 +27,7 @@ class View:
     Attributes:
         flip: (S, 2) bool, whether x and y run backwards.
         swap: (S,) bool, whether the axes are swapped, after flipping.
-        extent: (S, 2) width and height of the map, in the unit of places.
+        extent: (S, 2) width and height of the frame, in the unit of places.
     """
 
     flip: Tensor
@@ -37,8 +37,9 @@ class View:
     @classmethod
     def of(cls, scenarios: ScenarioBatch) -> View:
         """The symmetries 0 … 7, again and again, of S scenarios of which each 8 in a row are the same."""
+        scales = scenarios.scales
         number = torch.arange(len(scenarios), device=scenarios.device) % SYMMETRIES
-        return cls.numbered(number, (scenarios.map_size / scenarios.map_size.amax(1, keepdim=True)).float())
+        return cls.numbered(number, (scales.extent / scales.length[:, None]).float())
 
     @classmethod
     def numbered(cls, number: Tensor, extent: Tensor) -> View:

@@ -43,8 +43,10 @@ def test_padding() -> None:
     assert batch.capacity.tolist() == [[1, 1], [2, 1]]
     assert batch.speed.tolist() == [[1, 1], [1, 5]]
     assert batch.robot_exists.tolist() == [[True, False], [True, True]]
-    assert batch.map_size.tolist() == [[10, 20], [100, 100]]
-    for name in ("task_xy", "deadline", "workload", "robot_xy", "capacity", "speed", "map_size"):
+    # The first frame is the box around 0, 0 and 3, 4, the second that around 0, 0 and 30, 40: the maps are far larger.
+    assert batch.scales.extent.tolist() == [[3, 4], [30, 40]]
+    assert batch.scales.length.tolist() == [4, 40]
+    for name in ("task_xy", "deadline", "workload", "robot_xy", "capacity", "speed"):
         assert getattr(batch, name).dtype == torch.float64, name
 
 

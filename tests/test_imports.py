@@ -25,7 +25,7 @@ LAYERS = (
             "mrta_zoo.html",
         ),
     ),
-    ("the problem", ("mrta_zoo", "mrta_zoo.scenario", "mrta_zoo.plan")),
+    ("the problem", ("mrta_zoo", "mrta_zoo.scenario", "mrta_zoo.scales", "mrta_zoo.plan")),
     ("its rules", ("mrta_zoo.rules",)),
     (
         "dynamics, scores and data",

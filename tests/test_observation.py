@@ -15,12 +15,12 @@ from mrta_zoo.observation import (
     ROBOT_FEATURES,
     TASK_FEATURES,
     Observer,
-    Scales,
     observation_space,
 )
+from mrta_zoo.scales import Scales
 from mrta_zoo.scenario import Scenario
 
-# Scales: L = 80, T = 40, W = 8, C = 2, V = 5.
+# Scales: L = 75, T = 40, W = 8, C = 2, V = 5. The frame is the map: no margin is over a quarter of 60, the extent.
 SCENARIO = Scenario(
     task_xy=np.array([[3, 4], [30, 40], [6, 4], [60, 0]]),
     deadline=np.array([10, 40, 4, 6]),
@@ -28,7 +28,7 @@ SCENARIO = Scenario(
     robot_xy=np.array([[0, 0], [6, 8]]),
     capacity=np.array([2.0, 1.0]),
     speed=np.array([1.0, 5.0]),
-    map_size=(80, 60),
+    map_size=(75, 50),
 )
 
 
@@ -60,10 +60,10 @@ def test_tasks() -> None:
     assert equal(
         look(under_way(), 1)["observation"]["tasks"],
         [
-            [3 / 80, 4 / 80, 10 / 40, 4 / 8, 0, 1, 0, 0],  # robot 0 is on its way
-            [30 / 80, 40 / 80, 40 / 40, 8 / 8, 1, 0, 0, 0],
-            [6 / 80, 4 / 80, 4 / 40, 1 / 8, 0, 0, 1, 0],
-            [60 / 80, 0 / 80, 6 / 40, 2 / 8, 1, 0, 0, 0],
+            [3 / 75, 4 / 75, 10 / 40, 4 / 8, 0, 1, 0, 0],  # robot 0 is on its way
+            [30 / 75, 40 / 75, 40 / 40, 8 / 8, 1, 0, 0, 0],
+            [6 / 75, 4 / 75, 4 / 40, 1 / 8, 0, 0, 1, 0],
+            [60 / 75, 0 / 75, 6 / 40, 2 / 8, 1, 0, 0, 0],
             [0] * 8,  # padding
         ],
     )
@@ -84,8 +84,8 @@ def test_robots() -> None:
         assert equal(
             look(under_way(), robot)["observation"]["robots"],
             [
-                [3 / 80, 4 / 80, 2 / 2, 1 / 5, 7 / 40, 1, robot == 0],
-                [6 / 80, 4 / 80, 1 / 2, 5 / 5, 1.8 / 40, 1, robot == 1],
+                [3 / 75, 4 / 75, 2 / 2, 1 / 5, 7 / 40, 1, robot == 0],
+                [6 / 75, 4 / 75, 1 / 2, 5 / 5, 1.8 / 40, 1, robot == 1],
                 [0] * 7,  # padding
             ],
         )
@@ -93,13 +93,15 @@ def test_robots() -> None:
 
 def test_ego_is_the_observers_row() -> None:
     mission = under_way()
-    assert equal(look(mission, 0)["observation"]["ego"], [3 / 80, 4 / 80, 2 / 2, 1 / 5, 7 / 40])
-    assert equal(look(mission, 1)["observation"]["ego"], [6 / 80, 4 / 80, 1 / 2, 5 / 5, 1.8 / 40])
+    assert equal(look(mission, 0)["observation"]["ego"], [3 / 75, 4 / 75, 2 / 2, 1 / 5, 7 / 40])
+    assert equal(look(mission, 1)["observation"]["ego"], [6 / 75, 4 / 75, 1 / 2, 5 / 5, 1.8 / 40])
 
 
 def test_mission() -> None:
-    # L/V/T = 80 / 5 / 40 = 0.4 → 0.4 / 1.4; W/C/T = 8 / 2 / 40 = 0.1 → 0.1 / 1.1.
-    assert look(under_way(), 1)["observation"]["mission"] == pytest.approx([1.8 / 40, 0.4 / 1.4, 0.1 / 1.1], abs=1e-7)
+    # L/V/T = 80 / 5 / 40 = 0.4 → 0.375 / 1.375; W/C/T = 8 / 2 / 40 = 0.1 → 0.1 / 1.1.
+    assert look(under_way(), 1)["observation"]["mission"] == pytest.approx(
+        [1.8 / 40, 0.375 / 1.375, 0.1 / 1.1], abs=1e-7
+    )
 
 
 def test_times_after_the_last_deadline_show_as_one() -> None:
@@ -180,14 +182,17 @@ def test_every_observation_is_in_its_space() -> None:
 
 
 def test_scales() -> None:
-    assert Scales.of(SCENARIO) == Scales(length=80.0, time=40.0, work=8.0, capacity=2.0, speed=5.0)
-    assert Scales.of(SCENARIO).crossing_ratio == pytest.approx(0.4 / 1.4)
+    scales = Scales.of(SCENARIO)
+    assert (scales.length, scales.time, scales.work, scales.capacity, scales.speed) == (75.0, 40.0, 8.0, 2.0, 5.0)
+    assert Scales.of(SCENARIO).crossing_ratio == pytest.approx(0.375 / 1.375)
     assert Scales.of(SCENARIO).work_ratio == pytest.approx(0.1 / 1.1)
 
 
 def test_no_work_at_all_has_scale_one() -> None:
-    visits = Scenario(np.array([[3, 4]]), np.array([9]), np.array([0]), np.array([[0, 0]]), np.array([2]))
+    visits = Scenario(
+        np.array([[3, 4]]), np.array([9]), np.array([0]), np.array([[0, 0]]), np.array([2]), map_size=(4, 4)
+    )
     assert Scales.of(visits).work == 1.0
     seen = look(Mission(visits), 0, 1, 1)["observation"]
-    assert equal(seen["tasks"], [[3 / 100, 4 / 100, 1, 0, 1, 0, 0, 0]])
+    assert equal(seen["tasks"], [[3 / 4, 4 / 4, 1, 0, 1, 0, 0, 0]])
     assert observation_space(1, 1).contains(look(Mission(visits), 0, 1, 1))

@@ -17,15 +17,17 @@ from mrta_zoo.train.experts import ExpertPlan
 
 
 def turned(scenarios: ScenarioBatch, symmetry: Tensor) -> ScenarioBatch:
-    """The scenarios, each seen in one of the map's eight symmetries; only four of them where its map is not square.
+    """The scenarios, each seen in one of its frame's eight symmetries; only four of them where that is not square.
 
     Args:
         scenarios: S scenarios.
         symmetry: (S,) int64 in 0 to 7; bit 0 flips x, bit 1 flips y, bit 2 swaps the axes.
     """
-    square = scenarios.map_size[:, 0] == scenarios.map_size[:, 1]
-    view = View.numbered(torch.where(square, symmetry, symmetry & 3), scenarios.map_size)
-    return replace(scenarios, task_xy=view.of_places(scenarios.task_xy), robot_xy=view.of_places(scenarios.robot_xy))
+    extent, origin = scenarios.scales.extent, scenarios.scales.origin[:, None]
+    square = extent[:, 0] == extent[:, 1]
+    view = View.numbered(torch.where(square, symmetry, symmetry & 3), extent)
+    task_xy, robot_xy = (view.of_places(xy - origin) + origin for xy in (scenarios.task_xy, scenarios.robot_xy))
+    return replace(scenarios, task_xy=task_xy, robot_xy=robot_xy)
 
 
 class PlanBatch:

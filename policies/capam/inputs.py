@@ -1,8 +1,9 @@
 """What the networks read: observations as tensors, from the AEC environment or from the batched simulator.
 
 Shapes: S scenarios, G decisions of each (several samples of a mission, or several moments), N tasks, M robots.
-Places are in map lengths L; times either as shares of the latest deadline T, or in *crossings*, the time L/V that
-the fastest robot takes to cross the map. Crossings make travel and deadlines comparable across scenarios.
+Places are in lengths L of the frame (`mrta_zoo.scales`); times either as shares of T, the latest deadline that can
+bind, or in *crossings*, the time L/V that the fastest robot takes to cross the frame. Crossings make travel and
+deadlines comparable across scenarios.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import torch
 from torch import Tensor
 
 from mrta_zoo.batch import BatchMission, ScenarioBatch
-from mrta_zoo.observation import MISSION_FEATURES, ROBOT_FEATURES, TASK_FEATURES, Observation, Scales
+from mrta_zoo.observation import MISSION_FEATURES, ROBOT_FEATURES, TASK_FEATURES, Observation
 
 MOST_CROSSINGS = 1000.0
 """Where `Tasks.horizon` (above, and below at its inverse) and `Tasks.work_unit` saturate: beyond it deadlines either
@@ -56,11 +57,11 @@ class Tasks:
     @classmethod
     def of_batch(cls, scenarios: ScenarioBatch) -> Tasks:
         """The tasks of a batch of scenarios."""
-        s, scales = scenarios, _scales(scenarios)
+        s, scales = scenarios, scenarios.scales
         return _tasks(
-            (s.task_xy / scales.length[:, None, None]).float(),
-            (s.deadline / scales.time[:, None]).float(),
-            (s.workload / scales.work[:, None]).float(),
+            ((s.task_xy - scales.origin[:, None]) / scales.length[:, None, None]).float(),
+            (s.deadline / scales.time[:, None]).clamp(max=1).float(),
+            (s.workload / scales.work[:, None]).clamp(max=1).float(),
             s.task_exists,
             scales.crossing_ratio.float(),
             scales.work_ratio.float(),
@@ -156,19 +157,20 @@ class Watch:
     """
 
     def __init__(self, mission: BatchMission, groups: int = 1) -> None:
-        s, scales = mission.scenarios, _scales(mission.scenarios)
+        s, scales = mission.scenarios, mission.scenarios.scales
         self.mission = mission
         self._groups = (-1, groups)
+        self._origin = scales.origin[:, None]
         self._length = scales.length[:, None, None]
         self._time = scales.time
-        self._capacity = (s.capacity / scales.capacity[:, None]).float().unflatten(0, self._groups)
-        self._speed = (s.speed / scales.speed[:, None]).float().unflatten(0, self._groups)
+        self._capacity = (s.capacity / scales.capacity[:, None]).clamp(max=1).float().unflatten(0, self._groups)
+        self._speed = (s.speed / scales.speed[:, None]).clamp(max=1).float().unflatten(0, self._groups)
 
     def moments(self) -> Moments:
         """The present moment."""
         mission, groups = self.mission, self._groups
         return Moments(
-            xy=(mission.position / self._length).float().unflatten(0, groups),
+            xy=((mission.position - self._origin) / self._length).float().unflatten(0, groups),
             capacity=self._capacity,
             speed=self._speed,
             ready=(mission.ready / self._time[:, None]).clamp(max=1).float().unflatten(0, groups),
@@ -177,17 +179,6 @@ class Watch:
             elapsed=(mission.time / self._time).clamp(max=1).float().unflatten(0, groups),
             mask=mission.mask().unflatten(0, groups),
         )
-
-
-def _scales(s: ScenarioBatch) -> Scales:
-    work = s.workload.amax(1)
-    return Scales(
-        length=s.map_size.amax(1),
-        time=s.deadline.masked_fill(~s.task_exists, 0).amax(1),
-        work=torch.where(work > 0, work, 1.0),
-        capacity=s.capacity.masked_fill(~s.robot_exists, 0).amax(1),
-        speed=s.speed.masked_fill(~s.robot_exists, 0).amax(1),
-    )
 
 
 def _stacked(

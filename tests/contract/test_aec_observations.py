@@ -24,6 +24,7 @@ from mrta_zoo.errors import ActionError, ConfigError
 from mrta_zoo.mission import Mission
 from mrta_zoo.observation import Observer, split
 from mrta_zoo.rules import MaskReason, Status
+from mrta_zoo.scales import Scales
 
 INFO_KEYS = {"time", "elapsed", "completed", "action_mask", "mask_reason"}
 
@@ -80,8 +81,8 @@ def test_everything_stays_within_its_space(scenario, rule, form, staggered, seed
 def expected_tables(mission: Mission, robot: int, max_tasks: int, max_robots: int) -> dict[str, np.ndarray]:
     """The tables from the scenario and the routes alone, number by number."""
     scenario = mission.scenario
-    length, horizon = max(scenario.map_size), scenario.deadline.max()
-    work, capacity, speed = scenario.workload.max() or 1, scenario.capacity.max(), scenario.speed.max()
+    scales = Scales.of(scenario)
+    length, horizon, work, capacity, speed = scales.length, scales.time, scales.work, scales.capacity, scales.speed
     tasks, robots = np.zeros((max_tasks, 8)), np.zeros((max_robots, 7))
     finish = np.full(scenario.num_tasks, np.nan)
     for i, route in enumerate(mission.routes):
@@ -92,7 +93,8 @@ def expected_tables(mission: Mission, robot: int, max_tasks: int, max_robots: in
                 time + np.sqrt(dx * dx + dy * dy) / scenario.speed[i] + scenario.workload[task] / scenario.capacity[i]
             )
             finish[task], place = time, scenario.task_xy[task]
-        robots[i] = (*place / length, scenario.capacity[i] / capacity, scenario.speed[i] / speed,
+        robots[i] = (*(place - scales.origin) / length, min(scenario.capacity[i] / capacity, 1),
+                     min(scenario.speed[i] / speed, 1),
                      min(time / horizon, 1), not mission.retired[i], i == robot)  # fmt: skip
     for j in range(scenario.num_tasks):
         late = (scenario.deadline[j] if np.isnan(finish[j]) else finish[j]) > scenario.deadline[j]
@@ -103,7 +105,11 @@ def expected_tables(mission: Mission, robot: int, max_tasks: int, max_robots: in
         if finish[j] == mission.time:  # ends at this very moment: of this robot, or of one whose turn it will be
             status = int(mission.status[j])
             assert status in (2, 3)
-        tasks[j, :4] = (*scenario.task_xy[j] / length, scenario.deadline[j] / horizon, scenario.workload[j] / work)
+        tasks[j, :4] = (
+            *(scenario.task_xy[j] - scales.origin) / length,
+            min(scenario.deadline[j] / horizon, 1),
+            min(scenario.workload[j] / work, 1),
+        )
         tasks[j, 4 + status] = 1
     crossing, labour = length / speed / horizon, work / capacity / horizon
     elapsed = min(mission.time / horizon, 1)

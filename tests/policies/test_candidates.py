@@ -19,6 +19,7 @@ from mrta_zoo.policies.capam.neighbourhood import Neighbourhood
 from mrta_zoo.policies.capam.prospects import PROSPECT_COLUMNS
 from mrta_zoo.policies.rollout import roll_out
 from mrta_zoo.policies.sharing import Network, build_network
+from mrta_zoo.scales import Scales
 
 PLUS = NetworkConfig(embedding=32, heads=4, decoder="candidates", decision_layers=2)
 
@@ -277,17 +278,19 @@ def test_prospects_in_the_middle_of_missions() -> None:
             mission.step(torch.tensor([choose(mission.mask()[0].numpy())]))
         if bool(mission.done.all()):
             continue
-        found = candidates(mission, most_tasks=3, most_peers=99)
+        found, scales = candidates(mission, most_tasks=3, most_peers=99), Scales.of(scenario)
         ego, now = int(mission.actor[0]), float(mission.time[0])
-        crossing = max(scenario.map_size) / scenario.speed.max()
+        if now > scales.time:  # what is later shows as this
+            continue
+        crossing = scales.length / scales.speed
         position, ready = mission.position[0].numpy(), mission.ready[0].numpy()
         mask = mission.mask()[0].numpy()
 
-        def way(a: np.ndarray, b: np.ndarray, robot: int, of: Scenario = scenario) -> float:
-            return float(np.hypot(*(a - b)) / of.speed[robot])
+        def way(a: np.ndarray, b: np.ndarray, robot: int, of: Scenario = scenario, scales: Scales = scales) -> float:
+            return float(np.hypot(*(a - b)) / min(of.speed[robot], scales.speed))
 
-        def work(task: int, robot: int = ego, of: Scenario = scenario) -> float:
-            return float(of.workload[task] / of.capacity[robot])
+        def work(task: int, robot: int = ego, of: Scenario = scenario, scales: Scales = scales) -> float:
+            return float(min(of.workload[task], scales.work) / min(of.capacity[robot], scales.capacity))
 
         peers = [m for m in range(scenario.num_robots) if m != ego and not bool(mission.retired[0, m])]
         for place, task in enumerate(found.index[0, 0].tolist()):
@@ -299,7 +302,7 @@ def test_prospects_in_the_middle_of_missions() -> None:
                 if other == task:
                     continue
                 travel = way(scenario.task_xy[task], scenario.task_xy[other], ego)
-                arrival, deadline = free + travel, scenario.deadline[other]
+                arrival, deadline = free + travel, min(scenario.deadline[other], scales.time)
                 rival = min(
                     (max(ready[m], now) + way(position[m], scenario.task_xy[other], m) for m in peers), default=np.inf
                 )

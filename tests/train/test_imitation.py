@@ -17,6 +17,7 @@ from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.local_search.eils import EilsConfig, EilsSolver
 from mrta_zoo.policies.rollout import Segment
 from mrta_zoo.policies.sharing import build_network
+from mrta_zoo.scales import Scales
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.train.experts import ExpertPlan, Routes
 from mrta_zoo.train.imitation import PlanBatch, follow, turned
@@ -66,7 +67,7 @@ def check_followed(scenarios: list[Scenario], routes: list[Routes], segments: li
                 assert segment.moments.mask[row, q, task], "what a plan takes is legal"
                 *_, now, working = want[b][len(followed[b])]
                 elapsed = float(segment.moments.elapsed[row, q])
-                assert elapsed == pytest.approx(now / float(scenarios[b].deadline.max()), rel=1e-6)
+                assert elapsed == pytest.approx(min(1.0, now / Scales.of(scenarios[b]).time), rel=1e-6)
                 assert segment.moments.working[row, q, :m].tolist() == working
                 assert not segment.moments.working[row, q, m:].any()
                 followed[b].append((robot, task))
@@ -111,9 +112,14 @@ def test_plans_without_any_task_leave_nothing_to_decide() -> None:
 
 
 def test_symmetries_by_hand() -> None:
-    square = Scenario([[10, 30]], [90], [1], [[0, 40]], [1], map_size=(100, 100))  # type: ignore[arg-type]
-    wide = Scenario([[10, 30]], [90], [1], [[0, 40]], [1], map_size=(200, 100))  # type: ignore[arg-type]
+    three = {"deadline": [90, 90, 90], "workload": [1, 1, 1], "robot_xy": [[0, 40]], "capacity": [1]}
+    square = Scenario(task_xy=[[10, 30], [99, 5], [50, 90]], map_size=(100, 100), **three)  # type: ignore[arg-type]
+    wide = Scenario(task_xy=[[10, 30], [190, 5], [50, 90]], map_size=(200, 100), **three)  # type: ignore[arg-type]
+    moved = Scenario([[10, 30], [12, 34]], [90, 90], [1, 1], [[10, 34]], [1], map_size=(200, 100))  # type: ignore[arg-type]
     batch = ScenarioBatch.of([square, wide])
+    # The frame of the third is 2 wide and 4 high from 10, 30 on: its corner goes to the right, and up.
+    seen = turned(ScenarioBatch.of([moved]), torch.tensor([1])), turned(ScenarioBatch.of([moved]), torch.tensor([2]))
+    assert [each.task_xy[0].tolist() for each in seen] == [[[12, 30], [10, 34]], [[10, 34], [12, 30]]]
     places = [turned(batch, torch.full((2,), symmetry)).task_xy[:, 0].tolist() for symmetry in range(8)]
     assert [place for place, _ in places] == [
         [10, 30], [90, 30], [10, 70], [90, 70], [30, 10], [30, 90], [70, 10], [70, 90]
@@ -135,22 +141,23 @@ def test_symmetries_keep_distances_and_everything_else() -> None:
     for symmetry in range(8):
         seen = turned(batch, torch.full((len(cases),), symmetry))
         for row, case in enumerate(cases):
-            size = max(case.map_size)
+            size = max(case.map_end)
             torch.testing.assert_close(distances(seen, row), distances(batch, row), rtol=0, atol=1e-9 * size)
             xy = seen.task_xy[row, : case.num_tasks]
-            assert (xy >= 0).all()
-            assert (xy <= torch.tensor(case.map_size)).all()
+            assert (xy >= torch.tensor(case.map_origin) - 1e-9 * size).all()
+            assert (xy <= torch.tensor(case.map_end) + 1e-9 * size).all()
         for each in fields(batch):
-            if each.name not in ("task_xy", "robot_xy"):
+            if each.name not in ("task_xy", "robot_xy", "scales"):
                 assert torch.equal(getattr(seen, each.name), getattr(batch, each.name)), each.name
         if symmetry < 4:  # flips
             again = turned(seen, torch.full((len(cases),), symmetry))
-            size = batch.map_size.amax(1)[:, None, None]
+            size = batch.scales.length[:, None, None]
             assert ((again.task_xy - batch.task_xy).abs() <= 1e-12 * size).all()
             assert ((again.robot_xy - batch.robot_xy).abs() <= 1e-12 * size).all()
 
 
 def test_the_eight_symmetries_differ() -> None:
-    batch = ScenarioBatch.of([Scenario([[10, 30]], [90], [1], [[0, 40]], [1])])  # type: ignore[arg-type]
+    scenario = Scenario([[10, 30], [90, 90], [50, 5]], [90] * 3, [1] * 3, [[0, 40]], [1])  # type: ignore[arg-type]
+    batch = ScenarioBatch.of([scenario])
     images = sorted(tuple(turned(batch, torch.tensor([symmetry])).task_xy.flatten().tolist()) for symmetry in range(8))
     assert all(one != other for one, other in pairwise(images))
