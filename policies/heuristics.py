@@ -13,8 +13,8 @@ from mrta_zoo.errors import ActionError
 from mrta_zoo.observation import EGO_FEATURES, TASK_FEATURES, Observation
 
 TIE = 1e-6
-"""Distances as shares of the map's longer side, and deadlines as shares of the latest one, are equal if they differ by
-no more: observations are rounded to float32."""
+"""Distances as shares of the frame's longer side (`mrta_zoo.scales`) are equal if they differ by no more: observations
+are rounded to float32."""
 
 _X, _Y, _DEADLINE = (TASK_FEATURES.index(name) for name in ("x", "y", "deadline"))
 _EGO_X, _EGO_Y = (EGO_FEATURES.index(name) for name in ("x", "y"))
