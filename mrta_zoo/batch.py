@@ -125,8 +125,8 @@ class ScenarioBatch:
         return self._each(lambda every: every[rows])
 
     def _each(self, change: Callable[[Tensor], Tensor]) -> ScenarioBatch:
-        tensors = [change(getattr(self, field.name)) for field in fields(self)[:-1]]
-        return ScenarioBatch(*tensors, self.scales.each(change))
+        rows = {field.name: change(getattr(self, field.name)) for field in fields(self) if field.name != "scales"}
+        return ScenarioBatch(**rows, scales=self.scales.each(change))
 
 
 def _stacked_scales(scenarios: Sequence[Scenario], device: torch.device | str) -> Scales:

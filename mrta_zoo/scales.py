@@ -143,8 +143,8 @@ def _useful(scenario: Scenario) -> BoolArray:
     """(M,) which robots could finish any task by its deadline; all of them, if none could."""
     x, y = (scenario.task_xy[:, axis] - scenario.robot_xy[:, axis, None] for axis in (0, 1))
     time = np.hypot(x, y) / scenario.speed[:, None] + scenario.workload / scenario.capacity[:, None]
-    useful: BoolArray = (time <= scenario.deadline).any(axis=1)
-    return useful if useful.any() else ~useful
+    useful: BoolArray = np.asarray((time <= scenario.deadline).any(axis=1))
+    return useful if useful.any() else np.ones_like(useful)
 
 
 def _median(values: FloatArray) -> float:

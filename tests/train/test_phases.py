@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,6 +19,7 @@ from mrta_zoo.policies.local_search.eils import EilsConfig, EilsSolver
 from mrta_zoo.policies.rollout import Segment
 from mrta_zoo.train import imitator, reinforce
 from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.cuda_graph import tensors
 from mrta_zoo.train.distribution import draw_size, most_robots, team
 from mrta_zoo.train.experts import ExpertPlan, expert_scenario
 from mrta_zoo.train.imitation import PlanBatch, follow
@@ -205,8 +206,7 @@ def feed() -> Iterator[Feed]:
 
 def same(one: Drawn, other: Drawn) -> bool:
     return one.seed == other.seed and all(
-        torch.equal(getattr(one.scenarios, each.name), getattr(other.scenarios, each.name))
-        for each in fields(ScenarioBatch)
+        torch.equal(mine, its) for mine, its in zip(tensors(one.scenarios), tensors(other.scenarios), strict=True)
     )
 
 

@@ -231,6 +231,7 @@ class FirstThingsFirst:
             "samples": 8,
             "updates": 40,
             "learning_rate": 1e-2,
+            "temperature": 4.0,  # at the start it prefers what is near: too much, at such distances, to try the far one
         },
         {"objective": "cost", "entropy": 0.01},
         {"objective": "relative", "temperature": 0.5},
