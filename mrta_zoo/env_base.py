@@ -29,6 +29,7 @@ class EnvBase:
         super().__init__()
         self.settings = settings
         self._world = World(settings, num_actions)
+        self.num_actions = num_actions
         self.render_mode = settings.render_mode
         self._viewer = Viewer(settings.render_mode)
         self.possible_agents = list(self._world.names)
@@ -38,7 +39,7 @@ class EnvBase:
 
     @property
     def mission(self) -> Mission:
-        """The mission under way, with every detail that observations round off or leave out."""
+        """The mission under way, live, with every detail that observations round off or leave out: read it only."""
         return self._world.mission
 
     def observation_space(self, agent: str) -> spaces.Space[Any]:

@@ -17,6 +17,10 @@ class ActionError(MrtaError):
     """An agent chose something it may not choose now."""
 
 
+class OutOfBoundsError(ActionError, AssertionError):
+    """An action outside the action space; also what PettingZoo's wrapper raises for it."""
+
+
 class ConfigError(MrtaError):
     """A configuration, checkpoint or option has a value that cannot be used."""
 

@@ -21,7 +21,7 @@ import numpy as np
 import numpy.typing as npt
 
 from mrta_zoo.bounds import as_finite
-from mrta_zoo.errors import ActionError, ConfigError
+from mrta_zoo.errors import ActionError, ConfigError, OutOfBoundsError
 from mrta_zoo.mission import Mission
 from mrta_zoo.mrta_v0 import raw_env
 from mrta_zoo.render import RENDER_FPS, RENDER_MODES
@@ -99,9 +99,10 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
         if not self.mission.done:  # else nothing could be done from the start
             try:
                 self._aec.step(action)
+            except OutOfBoundsError:
+                raise
             except ActionError:  # and nothing has changed
-                outside = isinstance(action, bool) or not self.action_space.contains(action)
-                if outside or self.on_illegal == "raise":
+                if self.on_illegal == "raise":
                     raise
                 if self.on_illegal == "terminate":
                     self._over = True
@@ -118,9 +119,8 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
 
         Under this name sb3-contrib's MaskablePPO asks for it, also through vector environments.
         """
-        over = self.mission.done
-        mask: npt.NDArray[np.bool_] = self._aec.infos[self._aec.agent_selection]["action_mask"].astype(bool)
-        return np.ones_like(mask) if over else mask
+        mask = self._aec.mask(self._aec.agent_selection).astype(bool)
+        return np.ones_like(mask) if self.mission.done else mask
 
     def render(self) -> Any:
         """The mission as text or picture, by `render_mode`."""

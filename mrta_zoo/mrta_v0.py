@@ -47,7 +47,7 @@ tasks not yet taken may be chosen:
 - ``"unvisited"``: all, even if late (the paper's rule).
 
 An illegal action ends the episode for everyone in `env()` (PettingZoo's `TerminateIllegalWrapper`): the agent's
-reward is `illegal_reward`, the others' is 0. One outside the action space raises `wrappers.OutOfBoundsError`. In
+reward is `illegal_reward`, the others' is 0. One outside the action space raises `errors.OutOfBoundsError`. In
 `raw_env()` either raises `ActionError`, which names the agent, the action and what is valid, and changes nothing.
 
 Observations
@@ -58,6 +58,13 @@ another (`observation.split` takes it apart again); with ``observation="flat"`` 
 ``infos[agent]["action_mask"]``. `observe` answers for every possible agent at any time; one
 that the scenario does not have sees an ``ego`` of zeros and an empty mask. `state()` is the vector of tasks, robots and
 mission without what belongs to one observer; its size is ``8 max_tasks + 6 max_robots + 3``.
+
+What is handed out
+------------------
+Observations, masks, states and infos are the caller's: strike out entries, pop keys, write over them. Whether an action
+is legal is judged by the environment's own state, never by these. As everywhere in PettingZoo, ``env.infos``,
+``env.rewards`` and the like are the environment's books, to which `last` points: what is written into them shows there
+until the next step. ``env.unwrapped.mission`` is the mission itself, live: read it, but do not write to it.
 
 Rewards
 -------
@@ -122,6 +129,8 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
+import numpy as np
+import numpy.typing as npt
 from pettingzoo import AECEnv
 
 from mrta_zoo.bounds import as_finite
@@ -232,27 +241,35 @@ class raw_env(EnvBase, AECEnv[str, Any, Any]):  # noqa: N801  (PettingZoo's name
 
     def observe(self, agent: str) -> Any:
         """What an agent sees now; any possible agent, at any time after the first reset."""
-        robot = self._world.robot(agent)
-        return self._world.seen_by(robot, self._world.mask(robot))
+        return self._world.seen_by(self._world.robot(agent), self.mask(agent))
+
+    def mask(self, agent: str) -> npt.NDArray[np.int8]:
+        """(max_tasks,) int8, 1 where the agent may choose when it is next free; by this its actions are judged."""
+        return self._world.mask(self._world.robot(agent))
+
+    def end_by(self, agent: str, reward: float) -> None:
+        """End the episode for everyone because `agent` did what it may not: it gets `reward`, the others 0."""
+        self.terminations = dict.fromkeys(self.agents, True)
+        self.truncations = dict.fromkeys(self.agents, True)
+        self.rewards = dict.fromkeys(self.agents, 0.0) | {agent: reward}
+        self._cumulative_rewards[agent] = 0.0
+        self._accumulate_rewards()
+        self._deads_step_first()
 
     def _settle(self, rewards: list[float]) -> None:
         """Enter the books after the clock has moved: rewards, terminations, infos, who is next."""
         mission, agents = self._world.mission, self.agents
-        infos = self._world.infos()
-        if len(agents) == len(rewards):
-            self.rewards = dict(zip(agents, rewards, strict=True))
-            self.infos = infos
-        else:  # staggered, and some are gone
-            given = dict(zip(self._world.agents, rewards, strict=True))
-            self.rewards = {agent: given[agent] for agent in agents}
-            self.infos = {agent: infos[agent] for agent in agents}
+        infos, given = self._world.infos(), dict(zip(self._world.agents, rewards, strict=True))
+        gone = len(agents) < len(rewards)  # some are, if staggered
+        self.rewards = {agent: given[agent] for agent in agents} if gone else given
+        self.infos = {agent: infos[agent] for agent in agents} if gone else infos
         for agent, reward in self.rewards.items():
             self._cumulative_rewards[agent] += reward
         if mission.done:
             self.terminations = dict.fromkeys(agents, True)
             self.agent_selection = agents[0]
             return
-        self.agent_selection = self.possible_agents[mission.actor]
+        self.agent_selection = self._world.names[mission.actor]
         if self.settings.staggered and any(mission.retired):
             self.terminations = {agent: mission.retired[self._world.index[agent]] for agent in agents}
             self._deads_step_first()

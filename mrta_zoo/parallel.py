@@ -68,20 +68,25 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
         self.noop = settings.max_tasks
         self.on_illegal = on_illegal
         self.illegal_reward = as_finite("illegal_reward", illegal_reward)
-        self.agents: list[str] = []
+        self._present: list[str] = []
         self._choosing: set[int] = set()
         self._owed: list[float] = []  # reset returns no rewards, so the first step brings those of the start
+
+    @property
+    def agents(self) -> list[str]:
+        """The agents that are there now, in order; empty when the episode is over."""
+        return list(self._present)
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Any], dict[str, Info]]:
         """Start an episode; arguments and errors as in the AEC form."""
         self._owed = self._world.reset(seed, options)
-        self.agents = list(self._world.agents)
+        self._present = list(self._world.agents)
         self._choosing = set(self.mission.free())
         if self.render_mode == "human":
             self.render()
-        return {agent: self.observe(agent) for agent in self.agents}, self._infos(set())
+        return {agent: self.observe(agent) for agent in self._present}, self._infos(set())
 
     def step(self, actions: dict[str, Any]) -> StepResult:
         """Let every robot that must choose take a task.
@@ -96,7 +101,7 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
             ActionError: see the module's docstring.
         """
         world, mission = self._world, self.mission
-        if not self.agents:
+        if not self._present:
             EnvLogger.warn_step_after_terminated_truncated()
             return {}, {}, {}, {}, {}
         choices = self._choices(actions)
@@ -108,12 +113,12 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
                 raise self._illegal(illegal[0], choices[illegal[0]])
             EnvLogger.warn_on_illegal_move()
             rewards = [self.illegal_reward if agent in illegal else 0.0 for agent in world.agents]
-            return self._result(rewards, set(), dict.fromkeys(self.agents, True))
+            return self._result(rewards, set(), dict.fromkeys(self._present, True))
         if mission.done:  # nothing could be done from the start
-            return self._result(self._owed, set(), dict.fromkeys(self.agents, True))
+            return self._result(self._owed, set(), dict.fromkeys(self._present, True))
         taken: set[int] = set()
         losers: set[int] = set()
-        for agent in self.agents:  # in order of robot index
+        for agent in self._present:  # in order of robot index
             task = choices[agent]
             if task in taken:
                 losers.add(world.index[agent])
@@ -124,7 +129,7 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
         self._owed = [0.0] * len(rewards)
         self._choosing = set(mission.free())
         staggered = self.settings.staggered
-        over = {agent: mission.done or (staggered and mission.retired[world.index[agent]]) for agent in self.agents}
+        over = {agent: mission.done or (staggered and mission.retired[world.index[agent]]) for agent in self._present}
         return self._result(rewards, losers, over)
 
     def observe(self, agent: str) -> Any:
@@ -146,12 +151,12 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
         if not isinstance(actions, Mapping):
             raise ActionError(f"actions is {actions!r}; expected a dictionary with an action for each agent")
         for agent in actions:
-            if agent not in self.agents:
-                there = ", ".join(self.agents[:10]) + (", …" if len(self.agents) > 10 else "")
+            if agent not in self._present:
+                there = ", ".join(self._present[:10]) + (", …" if len(self._present) > 10 else "")
                 raise ActionError(f"there is an action for {agent!r}; the agents now are {there}")
         return {
             agent: self._world.as_action(agent, actions[agent]) if agent in actions else self.noop
-            for agent in self.agents
+            for agent in self._present
         }
 
     def _illegal(self, agent: str, action: int) -> ActionError:
@@ -165,23 +170,23 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
 
     def _infos(self, losers: set[int]) -> dict[str, Info]:
         infos = self._world.infos()
-        for agent in self.agents:
+        for agent in self._present:
             infos[agent]["action_mask"] = self.mask(agent)
             infos[agent]["conflict"] = int(self._world.index[agent] in losers)
-        return {agent: infos[agent] for agent in self.agents}
+        return {agent: infos[agent] for agent in self._present}
 
     def _result(self, rewards: list[float], losers: set[int], over: dict[str, bool]) -> StepResult:
         if all(over.values()):
             self._choosing = set()
         given = dict(zip(self._world.agents, rewards, strict=True))
         result = (
-            {agent: self.observe(agent) for agent in self.agents},
-            {agent: given[agent] for agent in self.agents},
+            {agent: self.observe(agent) for agent in self._present},
+            {agent: given[agent] for agent in self._present},
             over,
-            dict.fromkeys(self.agents, False),
+            dict.fromkeys(self._present, False),
             self._infos(losers),
         )
-        self.agents = [agent for agent in self.agents if not over[agent]]
+        self._present = [agent for agent in self._present if not over[agent]]
         if self.render_mode == "human":
             self.render()
         return result

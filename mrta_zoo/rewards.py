@@ -17,8 +17,9 @@ Reward = Callable[[Mission, Sequence[Finished]], Sequence[float]]
 
 Called once at reset, with nothing finished, and once after every step, with what was finished in it, in order of
 time; the numbers must be finite. Within an episode every finish is reported exactly once, and ``mission.done`` is
-seen exactly once. It must not change the mission, and has to be a module-level function (or a picklable object) if
-the environment is to be pickled.
+seen exactly once. The list of what was finished is the function's own. The mission is the environment's, not a copy,
+which would cost more than the step: the function must not change it, for that would change the episode. It has to be a
+module-level function (or a picklable object) if the environment is to be pickled.
 """
 
 

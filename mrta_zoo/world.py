@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 from gymnasium import spaces
 
-from mrta_zoo.errors import ActionError, ConfigError
+from mrta_zoo.errors import ActionError, ConfigError, OutOfBoundsError
 from mrta_zoo.mission import Finished, Mission
 from mrta_zoo.observation import FloatTable, Observer, flat_space, observation_space, state_space
 from mrta_zoo.rewards import as_rewards
@@ -32,6 +32,7 @@ class World:
 
     Attributes:
         settings: the environment's options, all filled in.
+        num_actions: of every agent; whether an action is one is judged by this, not by the spaces handed out.
         names: names of the possible agents, ``robot_0`` to ``robot_{max_robots-1}``.
         agents: names of those in the current scenario.
         index: robot index of each name.
@@ -47,6 +48,7 @@ class World:
         n, m = settings.max_tasks, settings.max_robots
         self.settings = settings
         self.max_tasks = n
+        self.num_actions = num_actions
         self.names = [f"robot_{robot}" for robot in range(m)]
         self.index = {name: robot for robot, name in enumerate(self.names)}
         self.action_spaces = {name: spaces.Discrete(num_actions) for name in self.names}
@@ -159,9 +161,9 @@ class World:
         """An action as a Python integer within the action space.
 
         Raises:
-            ActionError: if it is none.
+            OutOfBoundsError: if it is none.
         """
-        return as_action(agent, action, int(self.action_spaces[agent].n))
+        return as_action(agent, action, self.num_actions)
 
     def _space(self, num_actions: int) -> spaces.Space[Any]:
         n, m = self.max_tasks, len(self.names)
@@ -186,14 +188,14 @@ def as_action(agent: str, action: Any, num_actions: int) -> int:
     """An action as a Python integer from 0 to ``num_actions - 1``.
 
     Raises:
-        ActionError: if it is none.
+        OutOfBoundsError: if it is none.
     """
     try:
         number = operator.index(action)
     except TypeError:
         number = -1
     if not 0 <= number < num_actions or isinstance(action, bool):
-        raise ActionError(f"{agent} sent action {action!r}; expected a whole number from 0 to {num_actions - 1}")
+        raise OutOfBoundsError(f"{agent} sent action {action!r}; expected a whole number from 0 to {num_actions - 1}")
     return number
 
 

@@ -1,7 +1,8 @@
 """PettingZoo's three standard wrappers, with a short cut to the books and a clearer error.
 
 A wrapper of PettingZoo asks the one below it for `agent_selection`, `rewards` and so on, which asks the next: some
-fifty calls a turn. These read them from the environment itself. What they do is otherwise PettingZoo's.
+fifty calls a turn. These read them from the environment itself. Where PettingZoo's judge an action by what they have
+handed out (the mask shown last, the action space), these ask the environment. What they do is otherwise PettingZoo's.
 """
 
 from __future__ import annotations
@@ -10,18 +11,11 @@ from operator import attrgetter
 from typing import Any
 
 from pettingzoo import AECEnv
-from pettingzoo.utils.wrappers import (
-    AssertOutOfBoundsWrapper,
-    BaseWrapper,
-    OrderEnforcingWrapper,
-    TerminateIllegalWrapper,
-)
+from pettingzoo.utils.env_logger import EnvLogger
+from pettingzoo.utils.wrappers import BaseWrapper, OrderEnforcingWrapper
 
-from mrta_zoo.errors import ActionError
-
-
-class OutOfBoundsError(ActionError, AssertionError):
-    """An action outside the action space; also what PettingZoo's wrapper raises for it."""
+from mrta_zoo.errors import OutOfBoundsError
+from mrta_zoo.world import as_action
 
 
 def _book(name: str) -> Any:
@@ -39,20 +33,47 @@ class _DirectBooks(BaseWrapper[str, Any, Any]):
     infos = _book("infos")
     _cumulative_rewards = _book("_cumulative_rewards")
 
-    def __init__(self, env: AECEnv[str, Any, Any], **options: Any) -> None:
-        self._innermost = env.unwrapped
-        super().__init__(env, **options)
+    def __init__(self, env: AECEnv[str, Any, Any]) -> None:
+        self._innermost: Any = env.unwrapped
+        super().__init__(env)
+
+    def _over(self) -> bool:
+        """Whether the selected agent has terminated."""
+        agent = self.agent_selection
+        return bool(self.terminations[agent] or self.truncations[agent])
+
+    def __str__(self) -> str:
+        """The environment's name, as PettingZoo's wrappers give."""
+        return str(self.env)
 
     def _repr_html_(self) -> str:
         html: str = self._innermost._repr_html_()  # PettingZoo's wrapper passes on no name with an underscore
         return html
 
 
-class IllegalActionWrapper(_DirectBooks, TerminateIllegalWrapper[str, Any, Any]):
-    """PettingZoo's `TerminateIllegalWrapper`: an illegal action ends the episode for everyone."""
+class IllegalActionWrapper(_DirectBooks):
+    """PettingZoo's `TerminateIllegalWrapper`: an illegal action ends the episode for everyone.
+
+    Args:
+        env: the environment.
+        illegal_reward: reward of the agent that sent it; the others' is 0.
+    """
+
+    def __init__(self, env: AECEnv[str, Any, Any], illegal_reward: float) -> None:
+        super().__init__(env)
+        self._illegal_reward = illegal_reward
+
+    def step(self, action: Any) -> None:
+        """Step, if the action is legal or its agent has terminated; else end the episode."""
+        agent = self.agent_selection
+        if self._over() or self._innermost.mask(agent)[action]:
+            self.env.step(action)
+        else:
+            EnvLogger.warn_on_illegal_move()
+            self._innermost.end_by(agent, self._illegal_reward)
 
 
-class ActionSpaceWrapper(_DirectBooks, AssertOutOfBoundsWrapper[str, Any, Any]):
+class ActionSpaceWrapper(_DirectBooks):
     """PettingZoo's `AssertOutOfBoundsWrapper` with an error that names the agent, the action and what is valid."""
 
     def step(self, action: Any) -> None:
@@ -62,24 +83,12 @@ class ActionSpaceWrapper(_DirectBooks, AssertOutOfBoundsWrapper[str, Any, Any]):
             OutOfBoundsError: if not.
         """
         agent = self.agent_selection
-        if self.terminations[agent] or self.truncations[agent]:
-            if action is not None:
-                raise OutOfBoundsError(f"{agent} has terminated and sent action {action!r}; expected None")
-        else:
-            space = self._innermost.action_spaces[agent]
-            # The first two terms spare the usual action a longer look.
-            inside = type(action) is int and 0 <= action < space.n
-            # True is an int to Python, and so to the space.
-            if not inside and (isinstance(action, bool) or not space.contains(action)):
-                raise OutOfBoundsError(
-                    f"{agent} sent action {action!r}; expected a whole number from 0 to {space.n - 1}"
-                )
+        if not self._over():
+            as_action(agent, action, self._innermost.num_actions)
+        elif action is not None:
+            raise OutOfBoundsError(f"{agent} has terminated and sent action {action!r}; expected None")
         self.env.step(action)
 
 
 class OrderWrapper(_DirectBooks, OrderEnforcingWrapper[str, Any, Any]):
     """PettingZoo's `OrderEnforcingWrapper`: an error for what cannot be asked before the first reset."""
-
-    def __str__(self) -> str:
-        """The environment's name, as PettingZoo's wrapper (but not a class derived from it) gives."""
-        return str(self.env)
