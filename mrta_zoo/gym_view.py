@@ -4,7 +4,7 @@ For libraries that know no agents (Stable-Baselines3, sb3-contrib's MaskablePPO,
 by all robots, which sees in each step what the acting robot sees.
 
 >>> from mrta_zoo.gym_view import ActingRobotEnv
->>> env = ActingRobotEnv(reward="completion", observation="masked")
+>>> env = ActingRobotEnv(reward="completion", observation="masked")  # or gymnasium.make("mrta_zoo/mrta-v0", …)
 >>> observation, info = env.reset(seed=1)
 >>> done = False
 >>> while not done:
@@ -14,7 +14,7 @@ by all robots, which sees in each step what the acting robot sees.
 
 from __future__ import annotations
 
-from typing import Any, get_args
+from typing import Any, Unpack, get_args
 
 import gymnasium
 import numpy as np
@@ -25,7 +25,7 @@ from mrta_zoo.errors import ActionError, ConfigError, OutOfBoundsError
 from mrta_zoo.mission import Mission
 from mrta_zoo.mrta_v0 import raw_env
 from mrta_zoo.render import RENDER_FPS, RENDER_MODES
-from mrta_zoo.settings import Illegal, one_of
+from mrta_zoo.settings import Illegal, Options, one_of, with_options
 from mrta_zoo.world import next_legal
 
 Step = tuple[Any, float, bool, bool, dict[str, Any]]
@@ -53,7 +53,10 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
 
     metadata = {"render_modes": list(RENDER_MODES), "render_fps": RENDER_FPS}  # noqa: RUF012  (as in Gymnasium's own class)
 
-    def __init__(self, *, on_illegal: Illegal = "terminate", illegal_reward: float = -1.0, **options: Any) -> None:
+    @with_options
+    def __init__(
+        self, *, on_illegal: Illegal = "terminate", illegal_reward: float = -1.0, **options: Unpack[Options]
+    ) -> None:
         one_of("on_illegal", on_illegal, get_args(Illegal))
         self._aec = raw_env(**options)
         if self._aec.settings.staggered:

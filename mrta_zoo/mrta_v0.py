@@ -95,8 +95,7 @@ All numeric, the same keys for every agent at reset and after every step:
 
 Arguments
 ---------
-``env(scenario=None, generator=None, max_tasks=None, max_robots=None, mask_rule="feasible", reward="terminal",
-observation="dict", staggered=False, render_mode=None, illegal_reward=-1.0)``; see `mrta_zoo.settings.Settings`.
+``help(mrta_v0.env)`` lists them, `mrta_zoo.settings.Settings` says what they mean.
 
 `reset(seed=…, options={"scenario": scenario})` plays the given scenario; without it the environment's own, or one drawn
 from its generator. The same seed gives the same episode; without a seed the random generator goes on where it was.
@@ -109,8 +108,9 @@ turns.
 
 Other forms
 -----------
-`mrta_zoo.gym_view.ActingRobotEnv` is a Gymnasium environment, in which one agent acts for each robot in its turn;
-`mrta_zoo.dead_steps.SkipDeadSteps` a wrapper that steps for agents that have terminated.
+`mrta_zoo.gym_view.ActingRobotEnv` is a Gymnasium environment, in which one agent acts for each robot in its turn, also
+by ``gymnasium.make("mrta_zoo/mrta-v0")``; `mrta_zoo.dead_steps.SkipDeadSteps` a wrapper that steps for agents that have
+terminated.
 
 Rendering
 ---------
@@ -127,7 +127,7 @@ Version history
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Unpack
 
 import numpy as np
 import numpy.typing as npt
@@ -138,13 +138,14 @@ from mrta_zoo.env_base import EnvBase
 from mrta_zoo.errors import ActionError
 from mrta_zoo.parallel import ParallelMrtaEnv
 from mrta_zoo.render import RENDER_FPS, RENDER_MODES
-from mrta_zoo.settings import Settings
+from mrta_zoo.settings import Settings, TeamOptions, with_options
 from mrta_zoo.wrappers import ActionSpaceWrapper, IllegalActionWrapper, OrderWrapper
 
 __all__ = ["env", "parallel_env", "raw_env"]
 
 
-def env(*, illegal_reward: float = -1.0, **options: Any) -> AECEnv[str, Any, Any]:
+@with_options
+def env(*, illegal_reward: float = -1.0, **options: Unpack[TeamOptions]) -> AECEnv[str, Any, Any]:
     """The environment in PettingZoo's standard wrappers: the one to use.
 
     Args:
@@ -159,16 +160,8 @@ def env(*, illegal_reward: float = -1.0, **options: Any) -> AECEnv[str, Any, Any
     return OrderWrapper(ActionSpaceWrapper(wrapped))
 
 
-def parallel_env(**options: Any) -> ParallelMrtaEnv:
-    """The parallel form: all robots that are free act at once, see `mrta_zoo.parallel`.
-
-    Args:
-        **options: ``on_illegal``, ``illegal_reward``, and those of `mrta_zoo.settings.Settings`.
-
-    Raises:
-        ConfigError: if an option cannot be used.
-    """
-    return ParallelMrtaEnv(**options)
+parallel_env = ParallelMrtaEnv
+"""The parallel form: all robots that are free act at once, see `mrta_zoo.parallel`."""
 
 
 class raw_env(EnvBase, AECEnv[str, Any, Any]):  # noqa: N801  (PettingZoo's name for it)
@@ -190,7 +183,8 @@ class raw_env(EnvBase, AECEnv[str, Any, Any]):  # noqa: N801  (PettingZoo's name
         "is_parallelizable": False,  # PettingZoo's conversion asks for cyclic turns
     }
 
-    def __init__(self, **options: Any) -> None:
+    @with_options
+    def __init__(self, **options: Unpack[TeamOptions]) -> None:
         settings = Settings.of(options)
         assert settings.max_tasks is not None
         super().__init__(settings, num_actions=settings.max_tasks)

@@ -25,7 +25,7 @@ robots are free at the same time, the forms are decision for decision the same.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, ClassVar, get_args
+from typing import Any, ClassVar, Unpack, get_args
 
 import numpy as np
 import numpy.typing as npt
@@ -36,7 +36,7 @@ from mrta_zoo.bounds import as_finite
 from mrta_zoo.env_base import EnvBase
 from mrta_zoo.errors import ActionError
 from mrta_zoo.render import RENDER_FPS, RENDER_MODES
-from mrta_zoo.settings import Illegal, Settings, one_of
+from mrta_zoo.settings import Illegal, Settings, TeamOptions, one_of, with_options
 from mrta_zoo.world import Info, next_legal
 
 StepResult = tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Info]]
@@ -60,7 +60,10 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
         "render_fps": RENDER_FPS,
     }
 
-    def __init__(self, *, on_illegal: Illegal = "terminate", illegal_reward: float = -1.0, **options: Any) -> None:
+    @with_options
+    def __init__(
+        self, *, on_illegal: Illegal = "terminate", illegal_reward: float = -1.0, **options: Unpack[TeamOptions]
+    ) -> None:
         one_of("on_illegal", on_illegal, get_args(Illegal))
         settings = Settings.of(options)
         assert settings.max_tasks is not None

@@ -1,24 +1,26 @@
-"""Enters the environments into PettingZoo's registry, where its version has one (1.27 and later)."""
+"""Enters the environments into the registries of Gymnasium and, where it has one (1.27 and later), PettingZoo."""
 
 from __future__ import annotations
 
-ENVIRONMENTS = {
-    "aec": ("mrta_zoo/mrta-v0", "mrta_zoo.mrta_v0:env"),
-    "parallel": ("mrta_zoo/mrta-v0", "mrta_zoo.mrta_v0:parallel_env"),
-}
+NAME = "mrta_zoo/mrta-v0"
+PETTINGZOO = {"aec": "mrta_zoo.mrta_v0:env", "parallel": "mrta_zoo.mrta_v0:parallel_env"}
+GYMNASIUM = "mrta_zoo.gym_view:ActingRobotEnv"
 
 
 def register() -> None:
     """Register what is not registered yet: doing it twice would warn. Entry points are imported when made.
 
-    Without PettingZoo, as on a machine that only trains, there is nothing to do.
+    Without these libraries, as on a machine that only trains, there is nothing to do.
     """
     try:
+        import gymnasium
         import pettingzoo
     except ImportError:
         return
+    if NAME not in gymnasium.registry:
+        gymnasium.register(NAME, entry_point=GYMNASIUM)
     if not hasattr(pettingzoo, "register"):
         return
-    for form, (name, entry_point) in ENVIRONMENTS.items():
-        if name not in getattr(pettingzoo, f"{form}_registry"):
-            pettingzoo.register(form, name, entry_point=entry_point)
+    for form, entry_point in PETTINGZOO.items():
+        if NAME not in getattr(pettingzoo, f"{form}_registry"):
+            pettingzoo.register(form, NAME, entry_point=entry_point)

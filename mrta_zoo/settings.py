@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
+import inspect
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any, Literal, TypedDict, TypeVar, get_args, get_type_hints
 
 import numpy as np
 
@@ -22,6 +23,27 @@ RenderMode = Literal["ansi", "human", "rgb_array"]
 Illegal = Literal["terminate", "raise", "replace"]
 
 DEFAULT_MAX_TASKS, DEFAULT_MAX_ROBOTS = 100, 7
+
+Maker = TypeVar("Maker", bound=Callable[..., Any])
+
+
+class Options(TypedDict, total=False):
+    """What type checkers know of the keyword arguments that make an environment; `Settings` says what they mean."""
+
+    scenario: Scenario | None
+    generator: Generator | str | None
+    max_tasks: int | None
+    max_robots: int | None
+    mask_rule: MaskRule
+    reward: RewardName | Reward
+    observation: ObservationForm
+    render_mode: RenderMode | None
+
+
+class TeamOptions(Options, total=False):
+    """Those of the forms in which each robot is an agent."""
+
+    staggered: bool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,9 +61,9 @@ class Settings:
         reward: what the robots are rewarded for, a name or a function, see `rewards`.
         observation: ``"dict"`` of tables with the mask, ``"masked"``: one vector with the mask, or ``"flat"``: the
             vector alone, the mask in ``infos``.
-        staggered: whether a robot terminates as soon as it retires, instead of all together at the end.
         render_mode: what `render` gives: None, ``"ansi"`` (text), ``"rgb_array"`` (a picture), or ``"human"`` (shows
             the picture in a window at each step); the last two need ``mrta_zoo[render]``.
+        staggered: whether a robot terminates as soon as it retires, instead of all together at the end.
 
     Raises:
         ConfigError: if an option cannot be used.
@@ -54,8 +76,8 @@ class Settings:
     mask_rule: MaskRule = "feasible"
     reward: RewardName | Reward = "terminal"
     observation: ObservationForm = "dict"
-    staggered: bool = False
     render_mode: RenderMode | None = None
+    staggered: bool = False
 
     def __post_init__(self) -> None:
         if self.scenario is not None and not isinstance(self.scenario, Scenario):
@@ -78,7 +100,7 @@ class Settings:
             self.check_fits(self.scenario)
 
     @classmethod
-    def of(cls, options: dict[str, Any]) -> Settings:
+    def of(cls, options: Mapping[str, Any]) -> Settings:
         """Settings from keyword arguments, with a sentence about a misspelt one."""
         names = [field.name for field in dataclasses.fields(cls)]
         for option in options:
@@ -126,6 +148,23 @@ class Settings:
         if self.scenario is not None:
             return self.scenario.num_tasks if what == "tasks" else self.scenario.num_robots
         return _most(self.generator, what) or default
+
+
+def with_options(make: Maker) -> Maker:
+    """Show `help`, notebooks and editors the options that `make` takes as ``**options: Unpack[Options]``.
+
+    Their names and types are those of `Options` (or `TeamOptions`), their defaults those of `Settings`.
+    """
+    signature = inspect.signature(make, eval_str=True)
+    *own, options = signature.parameters.values()
+    defaults = inspect.signature(Settings).parameters
+    shared = [
+        inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=defaults[name].default, annotation=kind)
+        for name, kind in get_type_hints(get_args(options.annotation)[0]).items()
+    ]
+    parameters = sorted(shared + own, key=lambda parameter: parameter.kind)  # `self` first, the form's own last
+    make.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
+    return make
 
 
 def one_of(field: str, value: object, allowed: tuple[str, ...]) -> None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import copy
 import pickle
 
+import gymnasium
 import numpy as np
 import pytest
-from factories import FORMS, GENERATOR, hopeless_scenario, random_action, small_scenario
+from factories import FORMS, GENERATOR, hopeless_scenario, random_action, same, small_scenario
 from gymnasium.utils.env_checker import check_env
 
 from mrta_zoo import mrta_v0
@@ -16,9 +17,38 @@ from mrta_zoo.gym_view import ActingRobotEnv
 
 
 @pytest.mark.parametrize("form", FORMS)
-@pytest.mark.filterwarnings("ignore:.*not within the observation space.*")
 def test_gymnasium_check(form: str) -> None:
     check_env(ActingRobotEnv(generator=GENERATOR, observation=form), skip_render_check=True)
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_gymnasium_makes_it(form: str) -> None:
+    """Under Gymnasium's own wrappers, one of which checks what it gives; warnings are errors here."""
+    env = gymnasium.make("mrta_zoo/mrta-v0", generator=GENERATOR, observation=form, reward="completion")
+    assert isinstance(env.unwrapped, ActingRobotEnv)
+    assert env.spec is not None
+    assert env.spec.max_episode_steps is None
+    check_env(env.unwrapped, skip_render_check=True)
+    alone = ActingRobotEnv(generator=GENERATOR, observation=form, reward="completion")
+    assert same(env.reset(seed=5)[0], alone.reset(seed=5)[0])
+    over = False
+    while not over:
+        action = int(env.get_wrapper_attr("action_masks")().argmax())
+        seen, expected = env.step(action), alone.step(action)
+        assert same(dict(enumerate(seen)), dict(enumerate(expected)))
+        over = seen[2]
+    with pytest.raises(ConfigError, match="there is no option 'mask'"):
+        gymnasium.make("mrta_zoo/mrta-v0", mask=1)
+
+
+def test_gymnasium_makes_many() -> None:
+    envs = gymnasium.make_vec("mrta_zoo/mrta-v0", num_envs=3, generator=GENERATOR, observation="masked")
+    observations, infos = envs.reset(seed=0)
+    assert observations["action_mask"].shape == infos["action_mask"].shape == (3, 10)
+    assert np.array_equal(np.stack(envs.call("action_masks")), observations["action_mask"] == 1)
+    _, rewards, terminated, _, _ = envs.step(observations["action_mask"].argmax(axis=1))
+    assert rewards.tolist() == [0.0, 0.0, 0.0]  # nothing is done yet
+    assert not terminated.any()
 
 
 @pytest.mark.parametrize("form", FORMS)
