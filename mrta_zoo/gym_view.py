@@ -38,6 +38,8 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
     ``robot``. The reward of a step is the mean of all robots' rewards: with a team reward what each robot gets. After
     the last step the observation is that of ``robot_0``.
 
+    Where the mission is over, the mask is all 1 in observations, infos and `action_masks` alike, so that a masked policy
+    always has an action, as vector environments ask of it: they ignore the action after an episode's end and reset.
     Where no robot can do anything from the start, any action ends the episode, with the reward of a mission that has
     ended.
 
@@ -120,7 +122,8 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
     def action_masks(self) -> npt.NDArray[np.bool_]:
         """(max_tasks,) bool, true where the acting robot may choose; all true where the mission is over.
 
-        Under this name sb3-contrib's MaskablePPO asks for it, also through vector environments.
+        Under this name sb3-contrib's MaskablePPO asks for it, also through vector environments. Observations and infos
+        have the same as int8.
         """
         mask = self._aec.mask(self._aec.agent_selection).astype(bool)
         return np.ones_like(mask) if self.mission.done else mask
@@ -132,4 +135,9 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
     def _seen(self) -> tuple[Any, dict[str, Any]]:
         agent = self._aec.agent_selection
         info = {name: np.copy(of) if isinstance(of, np.ndarray) else of for name, of in self._aec.infos[agent].items()}
-        return self._aec.observe(agent), {**info, "robot": self.robot}
+        observation = self._aec.observe(agent)
+        if self.mission.done:
+            info["action_mask"] = self.action_masks().astype(np.int8)
+            if isinstance(observation, dict):
+                observation["action_mask"] = self.action_masks().astype(np.int8)
+        return observation, {**info, "robot": self.robot}

@@ -39,8 +39,9 @@ The index of the task to take. Tasks at or above the scenario's number of tasks 
 Mask
 ----
 ``action_mask`` is (max_tasks,) int8, 1 where the agent may choose; never all 0 for the agent that is to act. For the
-others it tells what they may choose when they are next free, as far as is known now. ``mask_rule`` says which of the
-tasks not yet taken may be chosen:
+others it tells what they may choose when they are next free, as far as is known now: nothing, all 0, if they are
+retired. (In the parallel form and in the Gymnasium environment no mask is ever all 0.)
+``mask_rule`` says which of the tasks not yet taken may be chosen:
 
 - ``"feasible"`` (default): those that this robot can finish by their deadline;
 - ``"active"``: those whose deadline has not passed;

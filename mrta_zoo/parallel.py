@@ -15,8 +15,9 @@ learners that know no masks. An action outside the action space, or one for an a
 
 Observations, rewards, infos and termination are those of the AEC form, except that ``action_mask`` is
 (max_tasks + 1,) and is the mask of this very step; ``mask_reason`` stays (max_tasks,) and tells why a task is masked
-when the robot is next free. Where no robot can do anything at the start, every agent has only the no-op, and the
-first step ends the episode, with the reward of a mission that has ended.
+when the robot is next free. No mask is all 0: one that has terminated shows the no-op. Where no robot can do anything
+at the start, every agent has only the no-op, and the first step ends the episode, with the reward of a mission that has
+ended.
 
 A plan made here is one the AEC form can make: finish times depend only on who does what in which order. Where no two
 robots are free at the same time, the forms are decision for decision the same.
