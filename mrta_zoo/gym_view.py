@@ -38,8 +38,8 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
     ``robot``. The reward of a step is the mean of all robots' rewards: with a team reward what each robot gets. After
     the last step the observation is that of ``robot_0``.
 
-    Where the mission is over, the mask is all 1 in observations, infos and `action_masks` alike, so that a masked policy
-    always has an action, as vector environments ask of it: they ignore the action after an episode's end and reset.
+    Where the mission is over, the mask is all 1 in observations, infos and `action_masks` alike. So a masked policy
+    always has an action: vector environments ask for one after an episode's end, too, ignore it, and reset.
     Where no robot can do anything from the start, any action ends the episode, with the reward of a mission that has
     ended.
 
@@ -47,7 +47,7 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
         on_illegal: what an action does that the mask forbids: ``"terminate"`` the episode, ``"raise"`` an error, or
             ``"replace"``: stand for the next that the mask allows, for learners that know no masks.
         illegal_reward: reward of a step that so ends the episode.
-        **options: see `mrta_zoo.settings.Settings`; without ``staggered``, for there is one agent to terminate.
+        **options: see `mrta_zoo.settings.Settings`; without ``staggered`` and ``absent``, for there is one agent.
 
     Raises:
         ConfigError: if an option cannot be used.
@@ -61,8 +61,11 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
     ) -> None:
         one_of("on_illegal", on_illegal, get_args(Illegal))
         self._aec = raw_env(**options)
-        if self._aec.settings.staggered:
-            raise ConfigError("staggered is True; expected False, for one agent acts for all robots to the end")
+        for option, only in (("staggered", False), ("absent", "omit")):
+            if (given := getattr(self._aec.settings, option)) != only:
+                raise ConfigError(
+                    f"{option} is {given!r}; expected {only!r}, for one agent acts for all robots to the end"
+                )
         self.on_illegal = on_illegal
         self.illegal_reward = as_finite("illegal_reward", illegal_reward)
         self.render_mode = self._aec.render_mode

@@ -30,7 +30,9 @@ cycles: `agent_selection` may be the same robot twice in a row. A robot that is 
 retired and never selected again. The mission ends when all are retired.
 
 A scenario may have fewer robots and tasks than there is room for: it then has fewer `agents` (never fewer
-`possible_agents`), and padding actions are masked.
+`possible_agents`), and padding actions are masked. With ``absent="noop"`` all possible agents are there, for libraries
+that want the same ones in every episode: those without a robot get no turn, have nothing to choose and reward 0, and
+terminate when the mission ends.
 
 Actions
 -------
@@ -266,5 +268,5 @@ class raw_env(EnvBase, AECEnv[str, Any, Any]):  # noqa: N801  (PettingZoo's name
             return
         self.agent_selection = self._world.names[mission.actor]
         if self.settings.staggered and any(mission.retired):
-            self.terminations = {agent: mission.retired[self._world.index[agent]] for agent in agents}
+            self.terminations = {agent: self._world.retired(agent) for agent in agents}
             self._deads_step_first()

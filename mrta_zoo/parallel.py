@@ -19,6 +19,11 @@ when the robot is next free. No mask is all 0: one that has terminated shows the
 at the start, every agent has only the no-op, and the first step ends the episode, with the reward of a mission that has
 ended.
 
+**Teams of varying size.** A scenario may have fewer robots than there are possible agents. By ``absent="omit"`` (the
+default) the episode has fewer agents, as PettingZoo allows. By ``absent="noop"`` all possible agents are there to the
+end, those without a robot with only the no-op and reward 0: for libraries that want the same agents in every episode
+(SuperSuit's vector environments, TorchRL).
+
 A plan made here is one the AEC form can make: finish times depend only on who does what in which order. Where no two
 robots are free at the same time, the forms are decision for decision the same.
 """
@@ -133,7 +138,7 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
         self._owed = [0.0] * len(rewards)
         self._choosing = set(mission.free())
         staggered = self.settings.staggered
-        over = {agent: mission.done or (staggered and mission.retired[world.index[agent]]) for agent in self._present}
+        over = {agent: mission.done or (staggered and world.retired(agent)) for agent in self._present}
         return self._result(rewards, losers, over)
 
     def observe(self, agent: str) -> Any:
@@ -167,10 +172,11 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
         valid = np.flatnonzero(self.mask(agent)).tolist()
         shown = ", ".join(map(str, valid[:10])) + (", …" if len(valid) > 10 else "")
         what = f"action {action}" + (" (the no-op)" if action == self.noop else "")
-        return ActionError(
-            f"{agent} sent {what} at time {self.mission.time:g}; its valid actions are {shown}"
-            + ("" if self._world.index[agent] in self._choosing else " (the no-op): it is not free")
-        )
+        robot, why = self._world.index[agent], ""
+        if robot not in self._choosing:
+            there = robot < self.mission.scenario.num_robots
+            why = " (the no-op): it is not free" if there else " (the no-op): the scenario has no such robot"
+        return ActionError(f"{agent} sent {what} at time {self.mission.time:g}; its valid actions are {shown}{why}")
 
     def _infos(self, losers: set[int]) -> dict[str, Info]:
         infos = self._world.infos()

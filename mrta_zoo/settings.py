@@ -21,6 +21,7 @@ Generator = Callable[[np.random.Generator], Scenario]
 ObservationForm = Literal["dict", "masked", "flat"]
 RenderMode = Literal["ansi", "human", "rgb_array"]
 Illegal = Literal["terminate", "raise", "replace"]
+Absent = Literal["omit", "noop"]
 
 DEFAULT_MAX_TASKS, DEFAULT_MAX_ROBOTS = 100, 7
 
@@ -44,6 +45,7 @@ class TeamOptions(Options, total=False):
     """Those of the forms in which each robot is an agent."""
 
     staggered: bool
+    absent: Absent
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,6 +66,9 @@ class Settings:
         render_mode: what `render` gives: None, ``"ansi"`` (text), ``"rgb_array"`` (a picture), or ``"human"`` (shows
             the picture in a window at each step); the last two need ``mrta_zoo[render]``.
         staggered: whether a robot terminates as soon as it retires, instead of all together at the end.
+        absent: what becomes of the possible agents that a scenario has no robot for: ``"omit"`` them, or ``"noop"``:
+            they are there to the end with nothing to choose and reward 0, for libraries that want the same agents in
+            every episode.
 
     Raises:
         ConfigError: if an option cannot be used.
@@ -78,6 +83,7 @@ class Settings:
     observation: ObservationForm = "dict"
     render_mode: RenderMode | None = None
     staggered: bool = False
+    absent: Absent = "omit"
 
     def __post_init__(self) -> None:
         if self.scenario is not None and not isinstance(self.scenario, Scenario):
@@ -92,6 +98,7 @@ class Settings:
         check_mask_rule(self.mask_rule)
         object.__setattr__(self, "reward", make_reward(self.reward))
         one_of("observation", self.observation, get_args(ObservationForm))
+        one_of("absent", self.absent, get_args(Absent))
         if self.render_mode is not None:
             one_of("render_mode", self.render_mode, get_args(RenderMode))
         if not isinstance(self.staggered, bool):

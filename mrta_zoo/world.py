@@ -34,7 +34,7 @@ class World:
         settings: the environment's options, all filled in.
         num_actions: of every agent; whether an action is one is judged by this, not by the spaces handed out.
         names: names of the possible agents, ``robot_0`` to ``robot_{max_robots-1}``.
-        agents: names of those in the current scenario.
+        agents: names of those that are there in the current episode: the scenario's and, with ``absent="noop"``, all.
         index: robot index of each name.
         action_spaces: for each name ``Discrete(num_actions)``, each an object of its own so that it has its own seed.
         observation_space: the space of every agent's observations.
@@ -67,7 +67,7 @@ class World:
         return self._mission
 
     def reset(self, seed: int | None, options: dict[str, Any] | None) -> list[float]:
-        """Start the next episode and return each robot's reward for it, which is not 0 if it ends at once."""
+        """Start the next episode and return each agent's reward for it, which is not 0 if it ends at once."""
         scenario = _scenario_option(options)
         if seed is not None:
             self._rng = _seeded(seed)
@@ -81,11 +81,11 @@ class World:
         self._observer = Observer(scenario, self.max_tasks, len(self.names))
         self._looked = False
         n, m = scenario.num_tasks, scenario.num_robots
-        self.agents = self.names[:m]
+        self.agents = self.names[:m] if self.settings.absent == "omit" else list(self.names)
         self.completed = 0
-        self._decided = [0.0] * m
+        self._decided = [0.0] * len(self.agents)
         # Kept up to date by `take`: only the row of the robot and the column of the task change.
-        self._reasons = np.full((m, self.max_tasks), _NO_TASK, dtype=np.int8)
+        self._reasons = np.full((len(self.agents), self.max_tasks), _NO_TASK, dtype=np.int8)
         for robot in range(m):
             self._reasons[robot, :n] = mission.reasons(robot)
         return self._reward([])
@@ -99,11 +99,11 @@ class World:
         mission = self.mission
         mission.take(robot, task)
         self._decided[robot] = mission.time
-        self._reasons[:, task] = _TAKEN
+        self._reasons[: mission.scenario.num_robots, task] = _TAKEN
         self._reasons[robot, : mission.scenario.num_tasks] = mission.reasons(robot)
 
     def advance(self) -> list[float]:
-        """Move the clock to the next robot to act and return each robot's reward."""
+        """Move the clock to the next robot to act and return each agent's reward."""
         finished = self.mission.advance()
         self._looked = False
         for event in finished:
@@ -111,7 +111,7 @@ class World:
         return self._reward(finished)
 
     def infos(self) -> dict[str, Info]:
-        """Fresh infos of every agent of the scenario, see `mrta_v0`."""
+        """Fresh infos of every agent, see `mrta_v0`."""
         reasons = self._reasons.copy()
         masks = (reasons == _CHOOSABLE).view(np.int8)
         time = self.mission.time
@@ -126,6 +126,10 @@ class World:
             }
             for name, decided, mask, reason in zip(self.agents, self._decided, masks, reasons, strict=True)
         }
+
+    def retired(self, agent: str) -> bool:
+        """Whether an agent's robot is retired; one that the scenario does not have never is."""
+        return self.mission.retired[robot] if (robot := self.index[agent]) < len(self.mission.retired) else False
 
     def mask(self, robot: int) -> npt.NDArray[np.int8]:
         """(max_tasks,) what `robot` may choose when next free; all 0 for one the scenario does not have."""
@@ -179,9 +183,9 @@ class World:
             self._looked = True
 
     def _reward(self, finished: Sequence[Finished]) -> list[float]:
-        reward = self.settings.reward
+        reward, robots = self.settings.reward, self.mission.scenario.num_robots
         assert callable(reward)  # a name was replaced at construction
-        return as_rewards(reward(self.mission, finished), len(self.agents))
+        return as_rewards(reward(self.mission, finished), robots) + [0.0] * (len(self.agents) - robots)
 
 
 def as_action(agent: str, action: Any, num_actions: int) -> int:

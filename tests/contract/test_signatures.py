@@ -17,7 +17,7 @@ from mrta_zoo.settings import Options, Settings, TeamOptions
 SHARED = [
     "scenario", "generator", "max_tasks", "max_robots", "mask_rule", "reward", "observation", "render_mode",
 ]  # fmt: skip
-TEAM = [*SHARED, "staggered"]
+TEAM = [*SHARED, "staggered", "absent"]
 SIGNATURES = [
     (mrta_v0.raw_env, TEAM),
     (mrta_v0.env, [*TEAM, "illegal_reward"]),

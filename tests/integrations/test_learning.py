@@ -128,6 +128,19 @@ def test_rllib_with_other_numbers_of_robots() -> None:
     algorithm.stop()
 
 
+def test_torchrl_with_other_numbers_of_robots() -> None:
+    """All four that there may be are there in every episode, and of these the scenario's have turns."""
+    generator = UniformGenerator(tasks=(5, 8), robots=(1, 4), deadline=(100, 300))
+    env = torchrl_ppo.make_env(0, generator=generator, absent="noop")
+    completed = []
+    for _ in range(10):
+        rollout = env.rollout(20)
+        assert rollout[torchrl_ppo.MASK].shape[1:] == (4, 8)
+        assert (rollout[torchrl_ppo.TURN].sum(1) == 1).all()
+        completed.append(float(rollout["next", "agents", "reward"].sum(0).max()))
+    assert 0.2 < np.mean(completed) <= 1.0
+
+
 @pytest.mark.parametrize("kind", ["mlp", "capam"])
 def test_rllib_module_is_masked(kind: Kind) -> None:
     env = rllib_ppo.RllibEnv(options(FORM[kind]))
