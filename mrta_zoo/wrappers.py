@@ -26,7 +26,6 @@ class _DirectBooks(BaseWrapper[str, Any, Any]):
     """Reads the environment's books without asking the wrappers in between."""
 
     agent_selection = _book("agent_selection")
-    agents = _book("agents")
     terminations = _book("terminations")
     truncations = _book("truncations")
     rewards = _book("rewards")
@@ -36,6 +35,11 @@ class _DirectBooks(BaseWrapper[str, Any, Any]):
     def __init__(self, env: AECEnv[str, Any, Any]) -> None:
         self._innermost: Any = env.unwrapped
         super().__init__(env)
+
+    @property
+    def agents(self) -> list[str]:
+        """Those that are there now: a list of the caller's own."""
+        return list(self._innermost.agents)
 
     def _over(self) -> bool:
         """Whether the selected agent has terminated."""

@@ -135,7 +135,8 @@ def test_an_action_is_judged_by_the_environments_size_and_not_by_a_space_handed_
         env = started(seed=1, make=make, scenario=SCENARIO)
         env.action_space("robot_0").n = np.int64(1)
         env.unwrapped.action_spaces.clear()
-        env.unwrapped.possible_agents.reverse()
+        env.possible_agents.reverse()
+        env.agents.reverse()
         env.step(2)
         assert env.agent_selection == "robot_1"
         assert env.unwrapped.mission.routes == [[2], []]
