@@ -128,8 +128,9 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
         Under this name sb3-contrib's MaskablePPO asks for it, also through vector environments. Observations and infos
         have the same as int8.
         """
-        mask = self._aec.mask(self._aec.agent_selection).astype(bool)
-        return np.ones_like(mask) if self.mission.done else mask
+        if self.mission.done:
+            return np.ones(self._aec.num_actions, dtype=np.bool_)
+        return self._aec.mask(self._aec.agent_selection).astype(np.bool_)
 
     def render(self) -> Any:
         """The mission as text or picture, by `render_mode`."""

@@ -42,8 +42,8 @@ Mask
 ----
 ``action_mask`` is (max_tasks,) int8, 1 where the agent may choose; never all 0 for the agent that is to act. For the
 others it tells what they may choose when they are next free, as far as is known now: nothing, all 0, if they are
-retired. (In the parallel form and in the Gymnasium environment no mask is ever all 0.)
-``mask_rule`` says which of the tasks not yet taken may be chosen:
+retired. (In the parallel form and in the Gymnasium environment no mask is ever all 0.) ``mask_rule`` says which of the
+tasks not yet taken may be chosen:
 
 - ``"feasible"`` (default): those that this robot can finish by their deadline;
 - ``"active"``: those whose deadline has not passed;
@@ -94,7 +94,8 @@ All numeric, the same keys for every agent at reset and after every step:
 - ``completed``: number of tasks completed so far by all robots;
 - ``action_mask``: (max_tasks,) int8, as above, for every agent;
 - ``mask_reason``: (max_tasks,) int8, why a task is masked, a `mrta_zoo.rules.MaskReason`: 0 choosable, 1 taken,
-  2 deadline passed, 3 too late for this robot, 4 padding. Judged at the time the robot is next free.
+  2 deadline passed, 3 too late for this robot, 4 padding (all tasks, if there is no robot). Judged at the time the
+  robot is next free.
 
 Arguments
 ---------

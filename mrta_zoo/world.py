@@ -129,7 +129,8 @@ class World:
 
     def retired(self, agent: str) -> bool:
         """Whether an agent's robot is retired; one that the scenario does not have never is."""
-        return self.mission.retired[robot] if (robot := self.index[agent]) < len(self.mission.retired) else False
+        robot, retired = self.index[agent], self.mission.retired
+        return robot < len(retired) and retired[robot]
 
     def mask(self, robot: int) -> npt.NDArray[np.int8]:
         """(max_tasks,) what `robot` may choose when next free; all 0 for one the scenario does not have."""

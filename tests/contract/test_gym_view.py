@@ -149,8 +149,9 @@ def test_seeds_are_those_of_the_aec_form() -> None:
 
 
 def test_before_the_first_reset() -> None:
-    with pytest.raises(ActionError, match="call reset"):
-        ActingRobotEnv().step(0)
+    for ask in (lambda: ActingRobotEnv().step(0), ActingRobotEnv().action_masks):
+        with pytest.raises(ActionError, match="call reset"):
+            ask()
 
 
 def test_options() -> None:
