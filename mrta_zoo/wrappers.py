@@ -43,8 +43,9 @@ class _DirectBooks(BaseWrapper[str, Any, Any]):
 
     def _over(self) -> bool:
         """Whether the selected agent has terminated."""
-        agent = self.agent_selection
-        return bool(self.terminations[agent] or self.truncations[agent])
+        env = self._innermost
+        agent = env.agent_selection
+        return bool(env.terminations[agent] or env.truncations[agent])
 
     def __str__(self) -> str:
         """The environment's name, as PettingZoo's wrappers give."""
@@ -69,12 +70,12 @@ class IllegalActionWrapper(_DirectBooks):
 
     def step(self, action: Any) -> None:
         """Step, if the action is legal or its agent has terminated; else end the episode."""
-        agent = self.agent_selection
-        if self._over() or self._innermost.mask(agent)[action]:
+        env = self._innermost
+        if self._over() or env.mask(env.agent_selection)[action]:
             self.env.step(action)
         else:
             EnvLogger.warn_on_illegal_move()
-            self._innermost.end_by(agent, self._illegal_reward)
+            env.end_by(env.agent_selection, self._illegal_reward)
 
 
 class ActionSpaceWrapper(_DirectBooks):
@@ -86,11 +87,11 @@ class ActionSpaceWrapper(_DirectBooks):
         Raises:
             OutOfBoundsError: if not.
         """
-        agent = self.agent_selection
+        env = self._innermost
         if not self._over():
-            as_action(agent, action, self._innermost.num_actions)
+            as_action(env.agent_selection, action, env.num_actions)
         elif action is not None:
-            raise OutOfBoundsError(f"{agent} has terminated and sent action {action!r}; expected None")
+            raise OutOfBoundsError(f"{env.agent_selection} has terminated and sent action {action!r}; expected None")
         self.env.step(action)
 
 
