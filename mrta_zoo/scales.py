@@ -2,7 +2,7 @@
 
 =========  ================================================================================================
 places     from the frame's lowest corner, divided by L, the longer side of the frame, see `frame_of`
-times      divided by T, the latest deadline; no later than `slack_time`, beyond which no deadline binds
+times      divided by T, the latest deadline that can bind, see `slack_time`
 workloads  divided by W, the largest, see `work_scale`
 capacity   divided by C, the largest capacity; speed by V, the largest speed, see `usual`
 =========  ================================================================================================
@@ -26,7 +26,8 @@ BoolArray = npt.NDArray[np.bool_]
 MOST_MARGIN = 0.25
 """The frame is the map where no margin around the places is wider than this share of their extent."""
 ODD = 10.0
-"""A capacity or speed is odd if it is more than this many times as large as those of half of the robots."""
+"""A capacity or speed is odd if it is more than this many times as large as those of half of the robots; places are, if
+nobody can get to or from them in time, and the box around all is this many times as large as without them."""
 HEAVY = 4.0
 """W is at most this many times as large as half of the workloads."""
 
@@ -56,14 +57,15 @@ class Scales:
     @classmethod
     def of(cls, scenario: Scenario) -> Scales:
         """The scales of a scenario; floats and (2,) float64 arrays."""
-        origin, extent = frame_of(scenario)
-        useful = _useful(scenario)
+        possible = in_time(scenario)
+        origin, extent = frame_of(scenario, possible)
+        useful = possible.any(axis=1) if possible.any() else slice(None)
         capacity, speed = usual(scenario.capacity[useful]), usual(scenario.speed[useful])
         return cls(
             origin=origin,
             extent=extent,
             length=float(extent.max()),
-            time=min(float(scenario.deadline.max()), slack_time(scenario)),
+            time=slack_time(scenario, float(np.hypot(*extent))),
             work=work_scale(scenario, capacity),
             capacity=capacity,
             speed=speed,
@@ -86,14 +88,22 @@ class Scales:
         return ratio / (1 + ratio)
 
 
-def frame_of(scenario: Scenario) -> tuple[FloatArray, FloatArray]:
+def frame_of(scenario: Scenario, possible: BoolArray | None = None) -> tuple[FloatArray, FloatArray]:
     """The part of the plane that the mission takes place in: lowest x and y, and width and height, both (2,).
 
-    It is the map where the places fill it more or less, otherwise the box around all tasks and robots: how large a map
-    was declared, and where 0 and 0 lie, is a matter of taste.
+    It is the map where the places fill it more or less, otherwise the box around all tasks and robots, less odd places
+    (see `ODD`): how large a map was declared, and where 0 and 0 lie, is a matter of taste.
+
+    Args:
+        scenario: the mission.
+        possible: its `in_time`, if known.
     """
-    places = np.concatenate((scenario.task_xy, scenario.robot_xy))
-    least, most = places.min(axis=0), places.max(axis=0)
+    least, most = _box(scenario.task_xy, scenario.robot_xy)
+    possible = in_time(scenario) if possible is None else possible
+    if possible.any():
+        low, high = _box(scenario.task_xy[possible.any(axis=0)], scenario.robot_xy[possible.any(axis=1)])
+        if 0 < ODD * (high - low).max() < (most - least).max():
+            return low, high - low
     origin, end = np.array(scenario.map_origin), np.array(scenario.map_end)
     size = float((most - least).max())
     margin = float(max((least - origin).max(), (end - most).max()))
@@ -102,15 +112,25 @@ def frame_of(scenario: Scenario) -> tuple[FloatArray, FloatArray]:
     return origin, np.array(scenario.map_size)
 
 
-def slack_time(scenario: Scenario) -> float:
-    """The time by which some robot could do, one after another, all that can wait; a later deadline cannot bind.
+def in_time(scenario: Scenario) -> BoolArray:
+    """(M, N) what each robot could finish by its deadline, if it went there first."""
+    x, y = (scenario.task_xy[:, axis] - scenario.robot_xy[:, axis, None] for axis in (0, 1))
+    finish = np.hypot(x, y) / scenario.speed[:, None] + scenario.workload / scenario.capacity[:, None]
+    return np.asarray(finish <= scenario.deadline)
+
+
+def slack_time(scenario: Scenario, crossing: float) -> float:
+    """T: the latest deadline or, if earlier, the time by which all that can wait could be done: none binds later.
 
     Say that k tasks have a deadline by d, and the others later ones. By d, the k tasks are done or missed, and
     every robot is free; from then on one robot could do all others by itself, crossing the frame to each of them. So
     none of them needs a deadline later than d and the time which that takes. The earliest such time over all d is
     returned, for the robot that is the median in how long it would take for all tasks; of two, the slower one.
+
+    Args:
+        scenario: the mission.
+        crossing: the way across the frame.
     """
-    crossing = float(np.hypot(*frame_of(scenario)[1]))
     alone = crossing * scenario.num_tasks / scenario.speed + scenario.workload.sum() / scenario.capacity
     robot = int(np.argsort(alone, kind="stable")[scenario.num_robots // 2])
     order = np.argsort(scenario.deadline, kind="stable")
@@ -139,12 +159,9 @@ def work_scale(scenario: Scenario, capacity: float) -> float:
     return min(float(counted.max()), HEAVY * _median(counted)) if len(counted) else 1.0
 
 
-def _useful(scenario: Scenario) -> BoolArray:
-    """(M,) which robots could finish any task by its deadline; all of them, if none could."""
-    x, y = (scenario.task_xy[:, axis] - scenario.robot_xy[:, axis, None] for axis in (0, 1))
-    time = np.hypot(x, y) / scenario.speed[:, None] + scenario.workload / scenario.capacity[:, None]
-    useful: BoolArray = np.asarray((time <= scenario.deadline).any(axis=1))
-    return useful if useful.any() else np.ones_like(useful)
+def _box(tasks: FloatArray, robots: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The lowest and the highest x and y of (…, 2) places."""
+    return np.minimum(tasks.min(axis=0), robots.min(axis=0)), np.maximum(tasks.max(axis=0), robots.max(axis=0))
 
 
 def _median(values: FloatArray) -> float:

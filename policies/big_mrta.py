@@ -10,7 +10,7 @@ import numpy as np
 
 from mrta_zoo.mission import Mission
 from mrta_zoo.plan import Plan
-from mrta_zoo.scales import frame_of, slack_time
+from mrta_zoo.scales import Scales
 from mrta_zoo.scenario import FloatArray, Scenario
 
 RANGE = 1e4
@@ -44,8 +44,9 @@ class BigMrtaSolver:
     def solve(self, scenario: Scenario) -> Plan:
         """A plan for `scenario`."""
         mission = Mission(scenario)
-        length = RANGE * float(frame_of(scenario)[1].max())
-        time = TIME_SCALE * float(scenario.deadline[scenario.deadline <= slack_time(scenario)].max())
+        scales = Scales.of(scenario)
+        length = RANGE * scales.length
+        time = TIME_SCALE * float(scenario.deadline[scenario.deadline <= scales.time].max())
         weights = np.empty((scenario.num_robots, scenario.num_tasks))
         for robot in range(scenario.num_robots):
             weights[robot] = _weights(mission, robot, length, time)

@@ -12,7 +12,7 @@ from strategies import seeded_scenarios
 from mrta_zoo import Scenario
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.policies.registry import make_solver
-from mrta_zoo.scales import Scales, frame_of, slack_time
+from mrta_zoo.scales import Scales, frame_of
 from mrta_zoo.verify import verify
 
 LINE = Scenario(
@@ -55,13 +55,25 @@ def test_the_frame_by_hand() -> None:
     assert [each.tolist() for each in frame_of(alone)] == [[0, 0], [40, 50]]
 
 
+def test_a_place_that_nobody_can_get_to_is_not_in_the_frame() -> None:
+    far = [[0, 0], [30, 0], [0, 40], [4000, 0]]  # due at 90; 4000 away takes 800
+    mission = replace(LINE, task_xy=far, deadline=[10, 60, 90, 90], workload=[0, 6, 3, 0], map_size=(5000, 5000))
+    assert [each.tolist() for each in frame_of(mission)] == [[0, 0], [30, 40]]
+    # At 390 it is not odd: the box around all is less than ten times 40 wide.
+    near = replace(mission, task_xy=[*far[:3], [390, 0]])
+    assert [each.tolist() for each in frame_of(near)] == [[0, 0], [390, 40]]
+    # With all the time in the world somebody can get there.
+    assert [each.tolist() for each in frame_of(replace(mission, deadline=[10, 60, 90, 900]))] == [[0, 0], [4000, 40]]
+    # A robot out there can do nothing, either.
+    robots = replace(LINE, robot_xy=[[0, 0], [4000, 0]], capacity=[2, 2], speed=[5, 5], map_size=(5000, 5000))
+    assert [each.tolist() for each in frame_of(robots)] == [[0, 0], [30, 40]]
+
+
 def test_the_time_that_can_matter_by_hand() -> None:
     # The frame is crossed in hypot(40, 50) / 5 = 12.81; works take 0, 3 and 1.5.
     # From 10 on: tasks 1 and 2, 10 + 2 · 12.81 + 4.5 = 40.1; from 60 on: task 2, 60 + 12.81 + 1.5. Or from 90 on, none.
-    assert slack_time(LINE) == pytest.approx(10 + 2 * np.hypot(40, 50) / 5 + 4.5)
-    assert Scales.of(LINE).time == slack_time(LINE)
+    assert Scales.of(LINE).time == pytest.approx(10 + 2 * np.hypot(40, 50) / 5 + 4.5)
     # With a slow robot all could not wait so long: 10 + 2 · 128.1 + 4.5 and 60 + 128.1 + 1.5 are beyond 90.
-    assert slack_time(replace(LINE, speed=[0.5])) == 90
     assert Scales.of(replace(LINE, speed=[0.5])).time == 90
 
 
@@ -156,6 +168,23 @@ def test_one_odd_value_does_not_spoil_what_a_network_does_with_the_rest(what: st
     """Measured against a rule that has no scales: the policy keeps its lead over the nearest task."""
     odd = [with_odd(each, what, factor) for each in CASES]
     assert completed("capam", odd) >= 0.98 * completed("nearest", odd)
+
+
+@pytest.mark.parametrize("method", ["nearest", "big-mrta", "capam"])
+def test_one_far_place_does_not_spoil_what_is_done_with_the_rest(method: str) -> None:
+    """Task 0 is out of reach before and after."""
+    for scenario in CASES:
+        wide, deadline, task_xy = (1e7, 1e7), scenario.deadline.copy(), scenario.task_xy.copy()
+        deadline[0] = 1e-3
+        before = replace(scenario, deadline=deadline, map_size=wide)
+        task_xy[0] = (9e6, 9e6)
+        after = replace(scenario, task_xy=task_xy, map_size=wide)
+        routes = [make_solver(method).solve(each).routes for each in (before, after)]
+        if method == "capam":  # the encoder sees it elsewhere
+            done = [sum(map(len, each)) for each in routes]
+            assert abs(done[0] - done[1]) <= 2
+        else:
+            assert routes[0] == routes[1]
 
 
 @pytest.mark.parametrize("latest", [1e4, 1e9])

@@ -59,7 +59,7 @@ class Tasks:
         """The tasks of a batch of scenarios."""
         s, scales = scenarios, scenarios.scales
         return _tasks(
-            ((s.task_xy - scales.origin[:, None]) / scales.length[:, None, None]).float(),
+            ((s.task_xy - scales.origin[:, None]) / scales.length[:, None, None]).clamp(0, 1).float(),
             (s.deadline / scales.time[:, None]).clamp(max=1).float(),
             (s.workload / scales.work[:, None]).clamp(max=1).float(),
             s.task_exists,
@@ -170,7 +170,7 @@ class Watch:
         """The present moment."""
         mission, groups = self.mission, self._groups
         return Moments(
-            xy=((mission.position - self._origin) / self._length).float().unflatten(0, groups),
+            xy=((mission.position - self._origin) / self._length).clamp(0, 1).float().unflatten(0, groups),
             capacity=self._capacity,
             speed=self._speed,
             ready=(mission.ready / self._time[:, None]).clamp(max=1).float().unflatten(0, groups),
