@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+from mrta_zoo.atomic import destination
 from mrta_zoo.errors import ConfigError
 
 
@@ -13,19 +15,30 @@ def check_destination(path: Path) -> None:
     """Make sure, as far as can be told without writing, that a file can be written to `path`.
 
     Raises:
-        ConfigError: if it is a folder, its folder does not exist, or writing is not permitted.
+        ConfigError: if it is a folder, its folder does not exist, writing is not permitted, or standard output goes
+            there.
     """
-    # os.path answers False where pathlib raises: without permission, or for a name that no file can have.
-    folder = path.parent
-    if os.path.isdir(path):
-        raise ConfigError(f"{path} is a folder; expected the name of a file to write")
-    if not os.path.isdir(folder):
-        problem = "is not a folder" if os.path.exists(folder) else "does not exist"
-        raise ConfigError(f"{path} cannot be written: {folder} {problem}")
-    # A file is replaced by renaming, for which the folder counts; devices are written to as they are.
-    place = path if os.path.exists(path) and not os.path.isfile(path) else folder
+    try:
+        target = destination(path)
+    except IsADirectoryError:
+        raise ConfigError(f"{path} is a folder; expected the name of a file to write") from None
+    except NotADirectoryError:
+        raise ConfigError(f"{path} cannot be written: {path.parent} is not a folder") from None
+    except (OSError, ValueError) as error:
+        reason = (getattr(error, "strerror", None) or str(error)).lower()
+        raise ConfigError(f"{path} cannot be written: {reason}") from None
+    if os.path.exists(target):  # the file itself counts: where it cannot be replaced, it is written in place
+        place = target
+    else:
+        place = target.parent
+        if not os.path.isdir(place):
+            problem = "is not a folder" if os.path.exists(place) else "does not exist"
+            named = path.parent if target == Path(os.path.abspath(path)) else place
+            raise ConfigError(f"{path} cannot be written: {named} {problem}")
     if not os.access(place, os.W_OK):
         raise ConfigError(f"{path} cannot be written: no permission to write to {place}")
+    if _takes_standard_output(target):
+        raise ConfigError(f"{path} is where standard output goes; expected a file of its own")
 
 
 def check_distinct(outputs: Mapping[str, Path | None], inputs: Mapping[str, Path | None]) -> None:
@@ -53,3 +66,10 @@ def _same_file(one: Path, other: Path) -> bool:
         # Devices and pipes, such as /dev/null, may be written to by anyone.
         return os.path.samefile(one, other) and os.path.isfile(one)
     return os.path.realpath(one) == os.path.realpath(other)
+
+
+def _takes_standard_output(path: Path) -> bool:
+    try:
+        return os.path.isfile(path) and os.path.samestat(os.stat(path), os.fstat(sys.stdout.fileno()))
+    except (AttributeError, OSError, ValueError):  # it is closed, or no file of the system's
+        return False

@@ -13,6 +13,8 @@ import matplotlib
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from mrta_zoo.atomic import replacing
+
 INK, FAINT, GRID = "#22303c", "#5d6874", "#e3e7eb"
 
 STYLES = {
@@ -63,6 +65,7 @@ def plain(axes: Any, grid: str = "x") -> None:
 
 def save_figure(figure: Figure, stem: Path) -> None:
     """Write ``stem.png`` and ``stem.svg``; equal figures give equal files."""
-    figure.savefig(stem.with_suffix(".png"), dpi=140, metadata={"Software": None})
-    with matplotlib.rc_context({"svg.hashsalt": "mrta_zoo"}):
-        figure.savefig(stem.with_suffix(".svg"), metadata={"Date": None, "Creator": None})
+    with replacing(stem.with_suffix(".png")) as partial:
+        figure.savefig(partial, format="png", dpi=140, metadata={"Software": None})
+    with replacing(stem.with_suffix(".svg")) as partial, matplotlib.rc_context({"svg.hashsalt": "mrta_zoo"}):
+        figure.savefig(partial, format="svg", metadata={"Date": None, "Creator": None})

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from mrta_zoo.atomic import replacing
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.extras import require
-from mrta_zoo.io.atomic import replacing
 from mrta_zoo.palette import FAINT, INK, robot_colour
 from mrta_zoo.plan import Plan
 from mrta_zoo.render.style import plain

@@ -15,8 +15,8 @@ import torch
 from safetensors import SafetensorError
 from safetensors.torch import load_file, save
 
+from mrta_zoo.atomic import replacing
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.io.atomic import replacing
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.sharing import USUAL_KINDS, Network, Sharing, build_network
 from mrta_zoo.rules import MaskRule

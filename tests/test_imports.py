@@ -19,6 +19,7 @@ LAYERS = (
         (
             "mrta_zoo.errors",
             "mrta_zoo.registration",
+            "mrta_zoo.atomic",
             "mrta_zoo.bounds",
             "mrta_zoo.extras",
             "mrta_zoo.palette",

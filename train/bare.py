@@ -16,7 +16,6 @@ import argparse
 import io
 import json
 import math
-import os
 import sys
 import time
 import zipfile
@@ -27,6 +26,7 @@ from typing import Any
 import numpy as np
 import torch
 
+from mrta_zoo.atomic import replacing
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.train.config import TrainConfig
@@ -159,7 +159,7 @@ def read_config(path: Path) -> TrainConfig:
         ConfigError: if the file is missing or no JSON, has an unknown field, or a value is out of range.
     """
     try:
-        values: dict[str, Any] = json.loads(path.read_text())
+        values: dict[str, Any] = json.loads(path.read_text(encoding="utf-8-sig"))
         return _config_of(values.get("config", values))  # the history that `train` leaves holds it, too
     except ConfigError:
         raise
@@ -203,10 +203,9 @@ def _save(out: Path, run: Reinforce, asked: TrainConfig, seconds: float) -> None
 
 
 def _write_history(out: Path, run: Reinforce) -> None:
-    path = out.with_name(out.name + ".json")
-    partial = path.with_name(path.name + ".partial")
-    partial.write_text(json.dumps({"config": asdict(run.config), "history": [asdict(each) for each in run.history]}))
-    os.replace(partial, path)
+    with replacing(out.with_name(out.name + ".json")) as partial:
+        history = [asdict(each) for each in run.history]
+        partial.write_text(json.dumps({"config": asdict(run.config), "history": history}), encoding="utf-8")
 
 
 def _arrays(tensors: dict[str, torch.Tensor]) -> dict[str, Any]:
@@ -220,12 +219,8 @@ def _store(path: Path, run: Reinforce, asked: TrainConfig, seconds: float, array
         "threads": torch.get_num_threads(), "history": [asdict(each) for each in run.history],
         "config": asdict(asked), "updates": run.config.updates,
     }  # fmt: skip
-    partial = path.with_name(path.name + ".partial.npz")
-    try:
-        np.savez(partial, about=np.array(json.dumps(about)), **arrays)
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
+    with replacing(path) as partial, partial.open("wb") as file:
+        np.savez(file, about=np.array(json.dumps(about)), **arrays)
 
 
 def _resume(out: Path, run: Reinforce) -> float:

@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from mrta_zoo.atomic import replacing
 from mrta_zoo.errors import ConfigError, PlanError
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
@@ -72,7 +73,6 @@ def make_shard(config: TrainConfig, first: int, folder: Path) -> Path:
 
     Needs the extra `solvers`.
     """
-    from mrta_zoo.io.atomic import replacing
     from mrta_zoo.policies.local_search.eils import EilsConfig, EilsSolver
 
     # Refilling by deadline is younger than the shipped policies: these plans are the ones that they imitated.

@@ -24,6 +24,7 @@ from mrta_zoo.eval.rows_file import RowsFile
 from mrta_zoo.eval.runner import Solved, row_of
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import Case
+from mrta_zoo.io.source import write_text
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import POLISH, make_solver, method_names
 
@@ -95,7 +96,7 @@ def converge_command(argv: Sequence[str]) -> None:
     order = [(name, None) for name in points] + [(name, budget) for name in methods for budget in budgets]
     curves = curves_of(rows.rows, order, command.seed)
     try:
-        curves.to_csv(command.out / "curves.csv", index=False, lineterminator="\n")
+        write_text(curves.to_csv(index=False, lineterminator="\n"), command.out / "curves.csv", ConfigError)
         save_figure(draw_curves(curves), command.out / "curves")
     except OSError as error:
         raise ConfigError(f"{command.out} cannot be written: {(error.strerror or str(error)).lower()}") from None

@@ -28,9 +28,9 @@ def write_report(report: Report, folder: Path) -> None:
         for section in report.sections:
             for picture in section.pictures:
                 save_figure(picture.figure, folder / picture.name)
-                picture.data.to_csv(folder / f"{picture.name}.csv", index=False, lineterminator="\n")
-            for table in section.tables:
-                table.data.to_csv(folder / f"{table.name}.csv", index=False, lineterminator="\n")
+            for each in (*section.pictures, *section.tables):
+                text = each.data.to_csv(index=False, lineterminator="\n")
+                write_text(text, folder / f"{each.name}.csv", ConfigError)
         for suffix in ("html", "md"):
             write_text(render(report, suffix, folder), folder / f"report.{suffix}", ConfigError)
     except OSError as error:

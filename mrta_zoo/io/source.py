@@ -6,8 +6,8 @@ import math
 import os
 import re
 
+from mrta_zoo.atomic import replacing
 from mrta_zoo.errors import MrtaError
-from mrta_zoo.io.atomic import replacing
 
 StrPath = str | os.PathLike[str]
 

@@ -16,7 +16,7 @@ import msgspec
 from mrta_zoo import palette
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.extras import require
-from mrta_zoo.io.atomic import replacing
+from mrta_zoo.io.source import write_text
 from mrta_zoo.replay.episode import Episode, Place, episode_of, place_of
 from mrta_zoo.trace import Trace
 
@@ -69,12 +69,7 @@ def write_replay(traces: Sequence[Trace], path: str | os.PathLike[str]) -> None:
     Raises:
         ConfigError: also if the file cannot be written.
     """
-    page = replay_page(traces)
-    try:
-        with replacing(path) as partial:
-            partial.write_text(page, encoding="utf-8")
-    except OSError as error:
-        raise ConfigError(f"{path} cannot be written: {(error.strerror or str(error)).lower()}") from None
+    write_text(replay_page(traces), path, ConfigError)
 
 
 def _part(name: str) -> str:

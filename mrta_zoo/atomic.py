@@ -1,0 +1,140 @@
+"""Files that are replaced whole or not at all."""
+
+from __future__ import annotations
+
+import errno
+import os
+import secrets
+import shutil
+import stat
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from io import FileIO
+from pathlib import Path
+
+_NOT_REPLACEABLE = (errno.EBUSY, errno.EXDEV, errno.EPERM, errno.EACCES, errno.EROFS)
+"""What the system says where another file may not take a file's place, though the file itself may be written to."""
+
+
+@contextmanager
+def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Write to the path that it yields; at the end the file there takes the place of `path`.
+
+    Readers see the old file or the new one, never half of it, also if the process is killed or others write the same
+    file. If anything is raised, what was there stays untouched. Links are followed: the file that they lead to is the
+    one replaced, and the new one has its owner and permissions. A file that only another place can be written for, as
+    it is mounted by itself, has a second name, or is in a folder that may not be written to, gets the finished text in
+    place. A device or pipe, such as ``/dev/stdout``, must not be replaced: its own path is yielded.
+
+    >>> with replacing("plan.json") as partial:
+    ...     partial.write_text("{}")
+
+    Raises:
+        OSError: if the file cannot be put there.
+        ValueError: if no file can have such a name.
+    """
+    target = destination(path)
+    if is_special(target):
+        yield target
+        return
+    partial = _new_partial(target)
+    try:
+        yield partial
+        _put(partial, target)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def destination(path: str | os.PathLike[str]) -> Path:
+    """The file that writing to `path` writes: the one that links lead to, which need not exist.
+
+    Raises:
+        OSError: if it is a folder, no file can be there, or the file there may not be written to.
+        ValueError: if no file can have such a name.
+    """
+    if is_special(path):
+        return Path(path)
+    target = Path(os.path.realpath(path))
+    try:
+        mode = os.stat(target).st_mode
+    except FileNotFoundError:
+        return target
+    if stat.S_ISDIR(mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if not os.access(target, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
+    return target
+
+
+def is_special(path: str | os.PathLike[str]) -> bool:
+    """Whether there is a device, a pipe or the like at `path`."""
+    return os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)
+
+
+def _new_partial(target: Path) -> Path:
+    """An empty file of a name that nobody else has, beside the target or, where that cannot be, for temporary files."""
+    there = os.path.exists(target)
+    mode = 0o600 if there else 0o666  # nobody may read what the file will hide; a new one is as the user wants new ones
+    name = f".{secrets.token_hex(8)}.tmp"
+    partial = target.with_name(name)
+    try:
+        os.close(os.open(partial, os.O_CREAT | os.O_EXCL | os.O_WRONLY, mode))
+    except OSError as error:
+        if not there or error.errno not in _NOT_REPLACEABLE:
+            raise
+        partial = Path(tempfile.gettempdir()) / name
+        os.close(os.open(partial, os.O_CREAT | os.O_EXCL | os.O_WRONLY, mode))
+    return partial
+
+
+def _put(partial: Path, target: Path) -> None:
+    """Have the finished file take its place."""
+    if not os.path.exists(target):
+        os.replace(partial, target)
+        return
+    if partial.parent == target.parent and _make_alike(partial, target):
+        try:
+            os.replace(partial, target)
+            return
+        except OSError as error:
+            if error.errno not in _NOT_REPLACEABLE:
+                raise
+    _write_over(target, partial.read_bytes())
+
+
+def _make_alike(partial: Path, target: Path) -> bool:
+    """Give a file another one's owner and permissions; whether it can then be put in its place unnoticed."""
+    there = os.stat(target)
+    if there.st_nlink > 1:
+        return False
+    if hasattr(os, "chown"):
+        with suppress(OSError):
+            os.chown(partial, there.st_uid, there.st_gid)
+        mine = os.stat(partial)
+        if (mine.st_uid, mine.st_gid) != (there.st_uid, there.st_gid):
+            return False
+    with suppress(OSError):  # of what some file systems do not know
+        shutil.copystat(target, partial)
+    os.chmod(partial, stat.S_IMODE(there.st_mode))
+    os.utime(partial)
+    return True
+
+
+def _write_over(target: Path, data: bytes) -> None:
+    """Write in place; on failure what was there is put back."""
+    with FileIO(target, "r+") as file:
+        before = file.readall()
+        try:
+            _fill(file, data)
+        except BaseException:
+            _fill(file, before)
+            raise
+
+
+def _fill(file: FileIO, data: bytes) -> None:
+    file.seek(0)
+    rest = memoryview(data)
+    while rest:
+        rest = rest[file.write(rest) :]
+    file.truncate()
