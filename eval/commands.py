@@ -20,9 +20,12 @@ from mrta_zoo.eval.schedule import proven, schedule_table, totals
 from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import Case, PlanScore, ScheduledTask, read_cases, read_scenario, write_plan
-from mrta_zoo.io.records import write_records
+from mrta_zoo.io.outputs import Outputs
+from mrta_zoo.io.records import records_text, write_records
 from mrta_zoo.io.taptc import find_agent_file
+from mrta_zoo.paths import suffix_of
 from mrta_zoo.policies.options import Decode
+from mrta_zoo.policies.policy_files import info_file, weights_file
 from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import METHODS, POLISH, make_solver, method_names
@@ -116,31 +119,31 @@ def solve_command(argv: Sequence[str]) -> None:
         solver = command.planning.solver(command.method)
     with cpu_threads(command.planning.threads):
         solved = solve_and_score(solver, scenario)
-    if command.out:
-        write_solved(solved, command.out)
-    if command.plot:
-        save_plan_picture(scenario, solved.plan, command.plot, solved.score)
-    console = results_console()
-    console.print(
-        f"{scenario.name}: {scenario.num_tasks} tasks, {scenario.num_robots} robots, planned by {command.method} "
-        f"in {solved.seconds:.3f} s",
-        soft_wrap=True,
-    )
-    console.print(schedule_table(scenario, solved.score))
-    console.print(totals(solved.score), soft_wrap=True)
-    if known := proven(solved.score, solved.plan.bound):
-        console.print(known, soft_wrap=True)
-    for path, what in ((command.out, "plan"), (command.plot, "picture")):
-        if path:
-            console.print(f"{what} written to {path}", soft_wrap=True)
+    with Outputs() as outputs:
+        if command.out:
+            outputs.write("plan", command.out, lambda path: write_solved(solved, path))
+        if command.plot:
+            outputs.write(
+                "picture", command.plot, lambda path: save_plan_picture(scenario, solved.plan, path, solved.score)
+            )
+        console = results_console()
+        console.print(
+            f"{scenario.name}: {scenario.num_tasks} tasks, {scenario.num_robots} robots, planned by {command.method} "
+            f"in {solved.seconds:.3f} s",
+            soft_wrap=True,
+        )
+        console.print(schedule_table(scenario, solved.score))
+        console.print(totals(solved.score), soft_wrap=True)
+        if known := proven(solved.score, solved.plan.bound):
+            console.print(known, soft_wrap=True)
+        for line in outputs.written:
+            console.print(line, soft_wrap=True)
 
 
 def policy_files(method: str) -> dict[str, Path]:
     """The files that a method is read from, if it is a policy of the user's; by what they are."""
-    place = Path(method.removesuffix(POLISH))
-    if place.suffix != ".safetensors":
-        place /= "policy.safetensors"
-    return {f"the weights of {method}": place, f"what belongs to the weights of {method}": place.with_suffix(".json")}
+    weights = weights_file(Path(method.removesuffix(POLISH)))
+    return {f"the weights of {method}": weights, f"what belongs to the weights of {method}": info_file(weights)}
 
 
 def agent_file(task_file: Path, agents: Path | None) -> Path | None:
@@ -150,7 +153,7 @@ def agent_file(task_file: Path, agents: Path | None) -> Path | None:
         task_file: the mission's.
         agents: the file of the robots, if one is named.
     """
-    if agents is not None or task_file.suffix.lower() in (".json", ".csv"):
+    if agents is not None or suffix_of(task_file) in (".json", ".csv"):
         return agents
     try:
         return find_agent_file(task_file)
@@ -219,14 +222,18 @@ def eval_command(argv: Sequence[str]) -> None:
     cases = builtin_cases() if command.cases == BUILTIN else read_cases(command.cases)
     with cpu_threads(command.planning.threads):
         rows = run_with_progress(cases, solvers)
-    if command.out:
-        write_records(rows, command.out)
-    console = results_console()
-    best_known = {case.name: case.best_known for case in cases if case.best_known is not None}
-    for table in summary_tables(rows, best_known):
-        console.print(table)
-    if command.out:
-        console.print(f"{len(rows)} rows written to {command.out}", soft_wrap=True)
+    with Outputs() as outputs:
+        lost = command.out and not outputs.write(
+            f"{len(rows)} rows", command.out, lambda path: write_records(rows, path)
+        )
+        console = results_console()
+        best_known = {case.name: case.best_known for case in cases if case.best_known is not None}
+        for table in summary_tables(rows, best_known):
+            console.print(table)
+        if lost:
+            console.print(records_text(rows), soft_wrap=True)
+        for line in outputs.written:
+            console.print(line, soft_wrap=True)
 
 
 def _files_of(cases: str) -> list[Path]:

@@ -23,6 +23,7 @@ from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.plan_files import read_any_plan
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import read_scenario
+from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.strict_json import write_document
 from mrta_zoo.policies.registry import method_names
 from mrta_zoo.scenario import Scenario
@@ -87,13 +88,14 @@ def compare_command(argv: Sequence[str]) -> None:
     ):
         first, second = (_advisor(scenario, name, command.planning) for name in both)
         found = compare(scenario, first, second)
-    if command.out:
-        write_comparison(found, both, command.out)
-    console = results_console()
-    for part in report(found, (both[0], both[1]), command.rows):
-        console.print(part, soft_wrap=isinstance(part, str))
-    if command.out:
-        console.print(f"comparison written to {command.out}", soft_wrap=True)
+    with Outputs() as outputs:
+        if command.out:
+            outputs.write("comparison", command.out, lambda path: write_comparison(found, both, path))
+        console = results_console()
+        for part in report(found, (both[0], both[1]), command.rows):
+            console.print(part, soft_wrap=isinstance(part, str))
+        for line in outputs.written:
+            console.print(line, soft_wrap=True)
 
 
 def _advisor(scenario: Scenario, name: str, planning: PlanningFlags) -> Advisor:

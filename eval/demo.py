@@ -59,9 +59,9 @@ def run_demo(folder: Path, policy_name: str = "capam-plus") -> None:
     with cpu_threads(1):
         names = dict.fromkeys((*COMPARED, policy_name))
         rows = run_with_progress(cases, {name: make_solver(name) for name in names})
-    write_records(rows, folder / "rows.csv")
     for table in summary_tables(rows):
         console.print(table)
+    write_records(rows, folder / "rows.csv")
     console.print(f"all rows: {folder / 'rows.csv'}", soft_wrap=True)
 
     _heading(console, "3. A small policy learns from scratch by REINFORCE")
@@ -71,10 +71,10 @@ def run_demo(folder: Path, policy_name: str = "capam-plus") -> None:
     _heading(console, "4. A plan as a picture")
     with cpu_threads(1):
         solved = solve_and_score(make_solver(policy_name), scenarios[DRAWN])
-    write_solved(solved, folder / "plan.json")
-    save_plan_picture(scenarios[DRAWN], solved.plan, folder / "plan.png", solved.score)
     console.print(f"{DRAWN} planned by {policy_name} in {solved.seconds:.3f} s:", soft_wrap=True)
     console.print(totals(solved.score), soft_wrap=True)
+    write_solved(solved, folder / "plan.json")
+    save_plan_picture(scenarios[DRAWN], solved.plan, folder / "plan.png", solved.score)
     console.print(f"routes and schedule: {(folder / 'plan.png').resolve()} (the data: plan.json)", soft_wrap=True)
     console.print(f"\nThe demo took {time.perf_counter() - begun:.0f} s.")
 

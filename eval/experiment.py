@@ -14,7 +14,7 @@ from typing import Any, Literal, TypeVar
 
 import msgspec
 import numpy as np
-from filelock import FileLock, Timeout
+from filelock import FileLock
 
 from mrta_zoo import __version__
 from mrta_zoo.errors import ConfigError
@@ -22,7 +22,9 @@ from mrta_zoo.eval.console import progress_bar
 from mrta_zoo.eval.rows_file import RowsFile, RowType
 from mrta_zoo.eval.runner import Solved, solve_cases
 from mrta_zoo.io import Case
-from mrta_zoo.io.source import write_text
+from mrta_zoo.io.lock import lock_folder
+from mrta_zoo.io.source import read_text, write_text
+from mrta_zoo.policies.policy_files import info_file, weights_file
 from mrta_zoo.policies.pretrained import pretrained_names, pretrained_path
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import METHODS, POLISH
@@ -78,11 +80,11 @@ def open_experiment(folder: Path, manifest: Manifest) -> None:
                     "this command"
                 )
             folder.mkdir(parents=True, exist_ok=True)
-            _lock(folder)
+            _LOCKS.append(lock_folder(folder))
             write_text(json.dumps(asdict(manifest), indent=2, ensure_ascii=False) + "\n", path, ConfigError)
             return
-        _lock(folder)
-        earlier = msgspec.json.decode(path.read_bytes(), type=Manifest)
+        _LOCKS.append(lock_folder(folder))
+        earlier = msgspec.json.decode(read_text(path, ConfigError, "what this command has written"), type=Manifest)
     except OSError as error:
         raise ConfigError(f"{folder} cannot be used: {(error.strerror or str(error)).lower()}") from None
     except msgspec.MsgspecError as error:
@@ -102,16 +104,6 @@ def resumable() -> Iterator[None]:
     except KeyboardInterrupt:
         print("the same command goes on where it stopped", file=sys.stderr)
         raise
-
-
-def _lock(folder: Path) -> None:
-    """Keep other processes out of the folder until this one ends, however it ends."""
-    lock = FileLock(folder / ".lock", is_singleton=True)
-    try:
-        lock.acquire(timeout=0)
-    except Timeout:
-        raise ConfigError(f"{folder} is in use by another run; expected to wait for its end, or a new folder") from None
-    _LOCKS.append(lock)
 
 
 def _difference(earlier: Manifest, now: Manifest) -> str:
@@ -204,11 +196,9 @@ def digest_of_weights(method: str) -> str:
     Raises:
         ConfigError: if they cannot be read.
     """
-    path = pretrained_path(method) if method in pretrained_names() else Path(method)
-    if path.is_dir():
-        path /= "policy.safetensors"
+    path = pretrained_path(method) if method in pretrained_names() else weights_file(Path(method))
     digest = hashlib.sha256()
-    for file in (path, path.with_suffix(".json")):
+    for file in (path, info_file(path)):
         try:
             digest.update(file.read_bytes())
         except OSError as error:

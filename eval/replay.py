@@ -19,6 +19,7 @@ from mrta_zoo.eval.plan_files import check_name
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import read_plan, read_scenario, read_trace
 from mrta_zoo.io.json_format import json_kind
+from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.replay.page import MOST_SIDES, write_replay
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import Trace
@@ -89,7 +90,8 @@ def replay_command(argv: Sequence[str]) -> None:
     scenario, given = _source(command, kind)
     with preparing("plays the episodes"), cpu_threads(command.planning.threads):
         traces = [*given, *(_episode(scenario, name, command.planning) for name in chosen)]
-    write_replay(traces, command.out)
+    with Outputs() as outputs:
+        outputs.write("page", command.out, lambda path: write_replay(traces, path))
     shown = " and ".join(trace.method or "an unnamed method" for trace in traces)
     size = command.out.stat().st_size / 1e6
     results_console().print(

@@ -55,8 +55,9 @@ class RowsFile(Generic[RowType]):
         try:
             with self.path.open("a", encoding="utf-8", newline="") as file:
                 file.write(stream.getvalue())
-        except OSError as error:
-            raise ConfigError(f"{self.path} cannot be written: {(error.strerror or str(error)).lower()}") from None
+        except (OSError, ValueError) as error:  # ValueError: text that is not UTF-8
+            reason = getattr(error, "strerror", None) or str(error)
+            raise ConfigError(f"{self.path} cannot be written: {reason.lower()}") from None
         self._whole_header = True
         self.rows.append(row)
 

@@ -28,6 +28,7 @@ from mrta_zoo.eval.plan_files import read_any_plan
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.io import read_scenario, read_trace
+from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.source import read_text
 from mrta_zoo.policies.registry import method_names
 from mrta_zoo.scenario import Scenario
@@ -99,7 +100,8 @@ def step_command(argv: Sequence[str]) -> None:
                 run_script(session, lines, source, console)
         finally:  # also after Ctrl-C
             if command.session and session.path:  # another one, if it was loaded
-                session.stepper.save(session.path)
+                with Outputs() as outputs:
+                    outputs.write("session", session.path, session.stepper.save)
                 if script is None:
                     print(f"saved; go on with: mrta-zoo step --session {session.path}")
 

@@ -6,12 +6,14 @@ Exit codes: 0, 2 for what the user can put right (one sentence on standard error
 from __future__ import annotations
 
 import os
+import re
 import sys
 from collections.abc import Callable, Sequence
 
 from mrta_zoo import __version__
-from mrta_zoo.errors import MrtaError
+from mrta_zoo.errors import ConfigError, MrtaError
 from mrta_zoo.extras import require
+from mrta_zoo.paths import check_no_url, is_utf8
 
 Command = Callable[[list[str]], None]
 """Runs a command with the arguments that follow its name."""
@@ -159,6 +161,8 @@ def _dispatch(arguments: list[str]) -> int:
     if not arguments:
         print(_help(), file=sys.stderr)
         return USER_ERROR
+    for argument in arguments:
+        _check(argument)
     name, *rest = arguments
     if name in ("-h", "--help"):
         print(_help())
@@ -171,6 +175,14 @@ def _dispatch(arguments: list[str]) -> int:
         print(f"error: there is no {kind} {name!r}; expected one of {', '.join(COMMANDS)}", file=sys.stderr)
         return USER_ERROR
     return 0
+
+
+def _check(argument: str) -> None:
+    """Refuse at once what no command can use: what is written or printed later would fail, or go astray."""
+    if not is_utf8(argument):
+        raise ConfigError(f"{argument!r} is not UTF-8; expected names of files and folders in UTF-8")
+    for part in re.split("^--[a-z-]+=|,", argument):
+        check_no_url(part, ConfigError)
 
 
 def _help() -> str:

@@ -4,6 +4,10 @@
 class MrtaError(ValueError):
     """Base of every error this package raises about its input. The command line prints it without a traceback."""
 
+    def __str__(self) -> str:
+        # A name of a file that is not UTF-8 could not be printed.
+        return super().__str__().encode(errors="backslashreplace").decode()
+
 
 class ScenarioError(MrtaError):
     """A scenario, or a file that should hold one, breaks a rule of the problem."""

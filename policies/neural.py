@@ -16,11 +16,14 @@ import torch
 
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.io.source import check_name
 from mrta_zoo.observation import MISSION_FEATURES, TASK_FEATURES, Observation
+from mrta_zoo.paths import check_no_url, suffix_of
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
 from mrta_zoo.policies.decoding import Decoding, best_plan
 from mrta_zoo.policies.options import Decode, SolverOptions
+from mrta_zoo.policies.policy_files import SUFFIX, weights_file
 from mrta_zoo.policies.pretrained import pretrained_names, pretrained_path
 from mrta_zoo.policies.rollout import NOT_FINITE, OutOfTimeError, roll_out
 from mrta_zoo.policies.sharing import IndependentNetworks, Network
@@ -234,18 +237,20 @@ def load_policy(name_or_path: str | Path, decode: Decode = "greedy", seed: int =
     Raises:
         ConfigError: if there is no such policy, or its files are damaged.
     """
+    check_no_url(name_or_path, ConfigError)
     path = Path(name_or_path)
     if str(name_or_path) in pretrained_names():
         path, name = pretrained_path(str(name_or_path)), str(name_or_path)
     elif path.is_dir():
-        path, name = path / "policy.safetensors", path.name
-    elif path.suffix == ".safetensors":
+        path, name = weights_file(path), path.name
+    elif suffix_of(path) == SUFFIX:
         name = path.stem
     else:
         raise ConfigError(
             f"there is no policy {str(name_or_path)!r}; expected one of {', '.join(pretrained_names())}, "
             "a .safetensors file, or the folder of a training run"
         )
+    check_name(name, str(path), "the policy's name", ConfigError)  # plans are signed with it
     network, info = load_weights(path)
     return NeuralPolicy(network, info, name, decode, seed)
 

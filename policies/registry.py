@@ -12,11 +12,13 @@ from typing import TYPE_CHECKING
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.extras import require
+from mrta_zoo.paths import check_no_url, suffix_of
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.aec_loop import run_in_environment
 from mrta_zoo.policies.big_mrta import BigMrtaSolver
 from mrta_zoo.policies.heuristics import EarliestDeadlinePolicy, NearestPolicy, RandomPolicy
 from mrta_zoo.policies.options import Decode, SolverOptions
+from mrta_zoo.policies.policy_files import SUFFIX
 from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.protocol import Policy, Solver
 from mrta_zoo.policies.pyvrp_solver import BUDGET as PYVRP_BUDGET
@@ -231,8 +233,9 @@ def _make(name: str, options: SolverOptions) -> Solver:
         if method.extra is not None:
             require(method.extra, f"method {name!r}")
         return method.make(options)
+    check_no_url(name, ConfigError)
     names = method_names()
-    if name not in names and not name.endswith(".safetensors") and not os.path.isdir(name):
+    if name not in names and suffix_of(name) != SUFFIX and not os.path.isdir(name):
         raise ConfigError(
             f"there is no method {name!r}; expected one of {', '.join(names)}, a .safetensors file, or the folder of a "
             f"training run, {POLISH} added if wanted"

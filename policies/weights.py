@@ -6,6 +6,7 @@ Nothing is ever unpickled, so a policy from a stranger can be loaded safely.
 from __future__ import annotations
 
 import json
+import os
 from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeVar, get_type_hints
@@ -17,9 +18,12 @@ from safetensors.torch import load_file, save
 
 from mrta_zoo.atomic import replacing
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.io.source import read_text
 from mrta_zoo.policies.capam.config import NetworkConfig
+from mrta_zoo.policies.policy_files import info_file
 from mrta_zoo.policies.sharing import USUAL_KINDS, Network, Sharing, build_network
 from mrta_zoo.rules import MaskRule
+from mrta_zoo.stand_ins import stand_in_at
 
 T = TypeVar("T")
 
@@ -71,7 +75,7 @@ def load_weights(path: Path) -> tuple[Network, PolicyInfo]:
         ConfigError: if a file is missing or malformed, or the weights don't fit the architecture.
     """
     path = Path(path)
-    info = read_json(path.with_suffix(".json"), PolicyInfo)
+    info = read_json(info_file(path), PolicyInfo)
     return build_with(read_tensors(path), info, path).eval(), info
 
 
@@ -119,7 +123,9 @@ def read_tensors(path: Path) -> dict[str, torch.Tensor]:
     except FileNotFoundError:
         raise ConfigError(f"{path}: no such file; expected weights in a .safetensors file") from None
     except (SafetensorError, OSError, ValueError) as error:
-        raise ConfigError(f"{path}: not a readable safetensors file ({error})") from None
+        instead = stand_in_at(path)
+        why = f": it {instead}" if instead else f" ({error})"
+        raise ConfigError(f"{path}: not a readable safetensors file{why}") from None
 
 
 def write_json(path: Path, value: Any) -> None:
@@ -134,14 +140,14 @@ def read_json(path: Path, of: type[T]) -> T:
     Raises:
         ConfigError: if the file is missing or malformed.
     """
+    if not os.path.lexists(path):
+        raise ConfigError(f"{path}: no such file; expected the JSON that belongs to the weights")
     try:
-        value = msgspec.json.decode(path.read_bytes())
+        value = msgspec.json.decode(read_text(path, ConfigError, "the JSON of a policy or a training run"))
         if isinstance(value, dict):
             _refuse_unknown(value, of, path)
         return msgspec.convert(value, of)
-    except FileNotFoundError:
-        raise ConfigError(f"{path}: no such file; expected the JSON that belongs to the weights") from None
-    except (msgspec.MsgspecError, OSError, UnicodeDecodeError, RecursionError) as error:
+    except (msgspec.MsgspecError, RecursionError) as error:
         raise ConfigError(f"{path}: {error}") from None
 
 

@@ -24,6 +24,8 @@ LAYERS = (
             "mrta_zoo.extras",
             "mrta_zoo.palette",
             "mrta_zoo.html",
+            "mrta_zoo.paths",
+            "mrta_zoo.stand_ins",
         ),
     ),
     ("the problem", ("mrta_zoo", "mrta_zoo.scenario", "mrta_zoo.scales", "mrta_zoo.plan")),

@@ -287,7 +287,7 @@ def main() -> None:
         torch.set_num_threads(a.threads)
     try:
         train(read_config(a.config), a.out, a.plans, a.workers, a.seconds, a.compiled, a.fit, a.resume)
-    except ConfigError as error:
+    except (ConfigError, OSError) as error:  # OSError: a file cannot be written
         print(f"error: {error}", file=sys.stderr)
         sys.exit(2)
     except KeyboardInterrupt:

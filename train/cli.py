@@ -16,6 +16,9 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 
 from mrta_zoo.bounds import MAX_THREADS, check_threads
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.io.lock import lock_folder
+from mrta_zoo.io.outputs import write_elsewhere
+from mrta_zoo.policies.weights import save_policy
 from mrta_zoo.train import checkpoint
 from mrta_zoo.train.collect import BARE, collect
 from mrta_zoo.train.config import TrainConfig
@@ -98,6 +101,7 @@ def train_command(argv: Sequence[str]) -> None:
             )
     else:
         run, seconds = checkpoint.start(command.out, command.config, options), 0.0
+    lock = lock_folder(command.out)
     try:
         if run.imitates:
             run.set_plans(make_plans(run.config, command.out / "plans", command.workers))
@@ -108,6 +112,8 @@ def train_command(argv: Sequence[str]) -> None:
         prepare = " --prepare" if command.prepare else ""
         print(f"go on with: mrta-zoo train --out {command.out} --resume{prepare}", file=sys.stderr)
         raise
+    finally:
+        lock.release()
 
 
 def parse(argv: Sequence[str]) -> TrainCommand:
@@ -182,7 +188,7 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
                 continue
             board.add_scalar("validation/completion", event.completion, event.update)
             board.add_scalar("validation/cost", event.cost, event.update)
-            checkpoint.save(folder, run, now - begun)
+            _save(folder, run, now - begun)
             shown = f"{100 * event.completion:.2f} %"
             progress.update(bar, completion=shown)
             note = "  (baseline replaced)" if event.baseline_replaced else ""
@@ -199,6 +205,21 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
         highlight=False,
         soft_wrap=True,
     )
+
+
+def _save(folder: Path, run: Reinforce, seconds: float) -> None:
+    """Write a checkpoint or, if that fails, at least the weights somewhere else.
+
+    Raises:
+        ConfigError: if it cannot be written.
+    """
+    try:
+        checkpoint.save(folder, run, seconds)
+    except ConfigError as error:
+        info = checkpoint.policy_info(run, seconds)
+        place = write_elsewhere(folder / "policy.safetensors", lambda path: save_policy(path, run.network, info))
+        instead = f"; the policy as it is now is in {place}" if place else ""
+        raise ConfigError(f"{error}{instead}") from None
 
 
 def _peek(argv: Sequence[str], flag: str) -> str | None:

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Annotated
 
+import pandas as pd
 from rich import box
 from rich.table import Table
 from tyro.conf import arg
@@ -24,6 +25,7 @@ from mrta_zoo.eval.rows_file import RowsFile
 from mrta_zoo.eval.runner import Solved, row_of
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import Case
+from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.source import write_text
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import POLISH, make_solver, method_names
@@ -95,11 +97,16 @@ def converge_command(argv: Sequence[str]) -> None:
             _measure(cases, solvers, rows, budget)
     order = [(name, None) for name in points] + [(name, budget) for name in methods for budget in budgets]
     curves = curves_of(rows.rows, order, command.seed)
-    try:
-        write_text(curves.to_csv(index=False, lineterminator="\n"), command.out / "curves.csv", ConfigError)
-        save_figure(draw_curves(curves), command.out / "curves")
-    except OSError as error:
-        raise ConfigError(f"{command.out} cannot be written: {(error.strerror or str(error)).lower()}") from None
+    text = curves.to_csv(index=False, lineterminator="\n")
+    with Outputs() as outputs:
+        outputs.write("data", command.out / "curves.csv", lambda path: write_text(text, path, ConfigError))
+        outputs.write(
+            "figure", command.out / "curves.png", lambda path: save_figure(draw_curves(curves), path.with_suffix(""))
+        )
+        _tell(curves, outputs)
+
+
+def _tell(curves: pd.DataFrame, outputs: Outputs) -> None:
     console = results_console()
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("tasks", "method", "budget, s", "measured, s", f"completed, mean % [{wording.INTERVAL}]", "cases"):
@@ -115,7 +122,8 @@ def converge_command(argv: Sequence[str]) -> None:
         "even where their intervals overlap (mrta-zoo reproduce tests it).",
         soft_wrap=True,
     )
-    console.print(f"figure written to {command.out / 'curves.png'} and .svg, its data to curves.csv", soft_wrap=True)
+    for line in outputs.written:
+        console.print(line, soft_wrap=True)
 
 
 def _measure(

@@ -13,6 +13,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.console import results_console
 from mrta_zoo.eval.figure_style import save_figure
 from mrta_zoo.eval.reproduce.parts import Report
+from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.source import write_text
 
 MARKDOWN = re.compile(r"([\\`*_{}\[\]|~])")
@@ -43,11 +44,13 @@ def publish(report: Report, folder: Path) -> None:
     Raises:
         ConfigError: if a file cannot be written.
     """
-    write_report(report, folder)
-    console = results_console()
-    for point in report.summary:
-        console.print(f"- {point}", soft_wrap=True)
-    console.print(f"report written to {folder / 'report.html'}", soft_wrap=True)
+    with Outputs() as outputs:
+        outputs.write("report", folder / "report.html", lambda path: write_report(report, path.parent))
+        console = results_console()
+        for point in report.summary:
+            console.print(f"- {point}", soft_wrap=True)
+        for line in outputs.written:
+            console.print(line, soft_wrap=True)
 
 
 def render(report: Report, suffix: str, folder: Path) -> str:

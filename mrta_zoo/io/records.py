@@ -27,8 +27,13 @@ def write_records(rows: Sequence[DataclassInstance], path: StrPath) -> None:
     """
     if not rows:
         raise ConfigError(f"{path} cannot be written: there are no rows; expected at least one")
+    write_text(records_text(rows), path, ConfigError)
+
+
+def records_text(rows: Sequence[DataclassInstance]) -> str:
+    """Rows of one class, at least one, as `write_records` writes them."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(field.name for field in fields(rows[0]))
     writer.writerows(astuple(row) for row in rows)
-    write_text(stream.getvalue(), path, ConfigError)
+    return stream.getvalue()

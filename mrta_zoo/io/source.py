@@ -8,6 +8,8 @@ import re
 
 from mrta_zoo.atomic import replacing
 from mrta_zoo.errors import MrtaError
+from mrta_zoo.paths import check_no_url, is_utf8
+from mrta_zoo.stand_ins import stand_in
 
 StrPath = str | os.PathLike[str]
 
@@ -20,8 +22,13 @@ _COUNT = re.compile(r"[0-9]+")
 _CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f]")
 
 
-def read_text(path: StrPath, error: type[MrtaError]) -> str:
+def read_text(path: StrPath, error: type[MrtaError], expected: str = "a scenario, a plan or a table") -> str:
     """The file's text, UTF-8 with or without byte order mark, line ends as ``\\n``.
+
+    Args:
+        path: the file.
+        error: what to raise.
+        expected: what messages say that it should hold.
 
     Raises:
         error: if there is no such file, it cannot be read, is too large, or holds no text.
@@ -30,6 +37,7 @@ def read_text(path: StrPath, error: type[MrtaError]) -> str:
         with open(path, "rb") as file:
             data = file.read(MAX_BYTES + 1)
     except FileNotFoundError:
+        check_no_url(path, error)
         raise error(f"{path}: there is no such file") from None
     except IsADirectoryError:
         raise error(f"{path} is a folder; expected a file") from None
@@ -38,26 +46,44 @@ def read_text(path: StrPath, error: type[MrtaError]) -> str:
     except (OSError, ValueError) as problem:  # ValueError: a null character in the path
         raise error(f"{_printable(path)} cannot be read: {_reason(problem)}") from None
     if len(data) > MAX_BYTES:
-        raise error(f"{path} is larger than {MAX_BYTES // 2**20} MiB; expected a scenario, a plan or a table")
+        raise error(f"{path} is larger than {MAX_BYTES // 2**20} MiB; expected {expected}")
+    if not data.strip():
+        raise error(f"{path} is empty; expected {expected}")
+    if instead := stand_in(data):
+        raise error(f"{path} {instead}")
+    text = decode(data, str(path), error)
+    if not text.strip():
+        raise error(f"{path} is empty; expected {expected}")
+    return text
+
+
+def decode(data: bytes, source: str, error: type[MrtaError]) -> str:
+    """Text in UTF-8 with or without byte order mark, line ends as ``\\n``.
+
+    Args:
+        data: the bytes.
+        source: what messages call where they are from.
+        error: what to raise.
+
+    Raises:
+        error: if they are no such text.
+    """
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as problem:
         if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-            raise error(f"{path} looks like UTF-16; expected UTF-8 text") from None
+            raise error(f"{source} looks like UTF-16; expected UTF-8 text") from None
         line = data.count(b"\n", 0, problem.start) + 1
         raise error(
-            f"{path}, line {line}: byte 0x{data[problem.start]:02x} is not UTF-8; expected UTF-8 text"
+            f"{source}, line {line}: byte 0x{data[problem.start]:02x} is not UTF-8; expected UTF-8 text"
         ) from None
     if "\0" in text:
         start = data[:64]
         if not any(start[::2]) or not any(start[1::2]):  # without byte order mark
-            raise error(f"{path} looks like UTF-16; expected UTF-8 text")
+            raise error(f"{source} looks like UTF-16; expected UTF-8 text")
         line = text.count("\n", 0, text.index("\0")) + 1
-        raise error(f"{path}, line {line}: holds the byte 0x00, as binary files do; expected text")
-    text = text.replace("\r\n", "\n").replace("\r", "\n")
-    if not text.strip():
-        raise error(f"{path} is empty; expected a scenario, a plan or a table")
-    return text
+        raise error(f"{source}, line {line}: holds the byte 0x00, as binary files do; expected text")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 def write_text(text: str, path: StrPath, error: type[MrtaError]) -> None:
@@ -98,11 +124,13 @@ def count(text: str, where: str, what: str, error: type[MrtaError]) -> int:
 
 
 def check_name(name: str, where: str, what: str, error: type[MrtaError]) -> None:
-    """Refuse a name that would steer the terminal it is printed on.
+    """Refuse a name that cannot be written to a file, or would steer the terminal it is printed on.
 
     Raises:
-        error: if the name holds control characters.
+        error: if the name is not UTF-8, as names of files need not be, or holds control characters.
     """
+    if not is_utf8(name):
+        raise error(f"{where}: {what} is {shown(name)}; expected text in UTF-8")
     if _CONTROL.search(name):
         raise error(f"{where}: {what} is {shown(name)}; expected text without control characters")
 

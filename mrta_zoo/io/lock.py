@@ -1,0 +1,29 @@
+"""Folders that only one process at a time writes to."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from filelock import FileLock, Timeout
+
+from mrta_zoo.errors import ConfigError
+
+
+def lock_folder(folder: Path) -> FileLock:
+    """Keep other processes out of a folder until the lock that is returned is released, or this process ends.
+
+    Needs filelock, as the extras `torch` and `report` bring it.
+
+    Args:
+        folder: exists; this process may lock it several times.
+
+    Raises:
+        ConfigError: if another process has it.
+        OSError: if it cannot be written to.
+    """
+    lock = FileLock(folder / ".lock", is_singleton=True)
+    try:
+        lock.acquire(timeout=0)
+    except Timeout:
+        raise ConfigError(f"{folder} is in use by another run; expected to wait for its end, or a new folder") from None
+    return lock

@@ -1,0 +1,35 @@
+"""Paths as people give them: what their suffix says, and what is none."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+
+from mrta_zoo.errors import MrtaError
+
+_URL = re.compile(r"(?P<scheme>[a-z][a-z0-9+.-]+):/+(?P<rest>.*)", re.IGNORECASE | re.DOTALL)
+
+
+def suffix_of(path: str | os.PathLike[str]) -> str:
+    """The suffix in small letters, such as ".csv"; "" if there is none."""
+    return Path(path).suffix.lower()
+
+
+def check_no_url(path: str | os.PathLike[str], error: type[MrtaError]) -> None:
+    """Refuse an address on the web or the like, which `pathlib` would take for a path with a slash too many.
+
+    Raises:
+        error: if it is one.
+    """
+    if url := _URL.fullmatch(os.fspath(path)):
+        raise error(f"{url['scheme']}://{url['rest']} is a URL; expected the path of a file or folder on this computer")
+
+
+def is_utf8(text: str) -> bool:
+    """Whether it can be written as UTF-8, which the name of a file need not be."""
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
