@@ -6,8 +6,10 @@ import os
 from dataclasses import replace
 
 from mrta_zoo.errors import ScenarioError
+from mrta_zoo.eval.console import warn
 from mrta_zoo.eval.flags import names
 from mrta_zoo.io import Case, read_cases
+from mrta_zoo.paths import composed
 from mrta_zoo.suite import builtin_suite, double_suite
 
 BUILTIN = "builtin"
@@ -24,10 +26,10 @@ def read_all(cases: str) -> list[Case]:
         return [Case(scenario.name, scenario) for scenario in (*builtin_suite(), *double_suite())]
     found: dict[str, Case] = {}
     for folder in names(cases, "folders", "folders", "taptc/n100,taptc/n200"):
-        for case in read_cases(folder):
+        for case in read_cases(folder, warn):
             name = case.name
             if name in found:  # as in folders that were generated
-                name = f"{os.path.basename(os.path.abspath(folder))}/{name}"
+                name = f"{_own_name(folder)}/{name}"
             if name in found:
                 raise ScenarioError(
                     f"{folder} holds a case called {name!r}, as another folder does; expected different names"
@@ -38,4 +40,8 @@ def read_all(cases: str) -> list[Case]:
 
 def shown_cases(cases: str) -> str:
     """The folders' own names: where they lie is nobody's business, and the digest says what is in them."""
-    return ",".join(os.path.basename(os.path.abspath(each)) for each in names(cases))
+    return ",".join(_own_name(each) for each in names(cases))
+
+
+def _own_name(folder: str) -> str:
+    return composed(os.path.basename(os.path.abspath(folder)))

@@ -11,7 +11,7 @@ from typing import Annotated
 from tyro.conf import Positional, arg
 
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.eval.console import preparing, progress_bar, results_console
+from mrta_zoo.eval.console import preparing, progress_bar, results_console, warn
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.rows import Row
@@ -219,7 +219,7 @@ def eval_command(argv: Sequence[str]) -> None:
         check_distinct({"--out": command.out}, inputs)
     with preparing():
         solvers = {method: command.planning.solver(method) for method in methods}
-    cases = builtin_cases() if command.cases == BUILTIN else read_cases(command.cases)
+    cases = builtin_cases() if command.cases == BUILTIN else read_cases(command.cases, warn)
     with cpu_threads(command.planning.threads):
         rows = run_with_progress(cases, solvers)
     with Outputs() as outputs:

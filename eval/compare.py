@@ -25,6 +25,7 @@ from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import read_scenario
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.strict_json import write_document
+from mrta_zoo.paths import suffix_of
 from mrta_zoo.policies.registry import method_names
 from mrta_zoo.scenario import Scenario
 
@@ -76,7 +77,7 @@ def compare_command(argv: Sequence[str]) -> None:
         raise ConfigError(f"rows is {command.rows}; expected a whole number >= 1")
     if command.out:
         check_destination(command.out)
-        files = {name: Path(name) for name in both if name.endswith(".json")}
+        files = {name: Path(name) for name in both if suffix_of(name) == ".json"}
         for name in both:
             files |= policy_files(name)
         read = {"the scenario": command.scenario, "the agent file": agent_file(command.scenario, command.agents)}

@@ -43,3 +43,8 @@ def progress_bar() -> Progress:
         disable=not console.is_terminal,
         transient=True,
     )
+
+
+def warn(sentence: str) -> None:
+    """Say on standard error what is no error, but may be a mistake."""
+    print(f"warning: {sentence}", file=sys.stderr)

@@ -24,6 +24,7 @@ from mrta_zoo.eval.runner import Solved, solve_cases
 from mrta_zoo.io import Case
 from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.io.source import read_text, write_text
+from mrta_zoo.paths import composed
 from mrta_zoo.policies.policy_files import info_file, weights_file
 from mrta_zoo.policies.pretrained import pretrained_names, pretrained_path
 from mrta_zoo.policies.protocol import Solver
@@ -84,7 +85,8 @@ def open_experiment(folder: Path, manifest: Manifest) -> None:
             write_text(json.dumps(asdict(manifest), indent=2, ensure_ascii=False) + "\n", path, ConfigError)
             return
         _LOCKS.append(lock_folder(folder))
-        earlier = msgspec.json.decode(read_text(path, ConfigError, "what this command has written"), type=Manifest)
+        text = composed(read_text(path, ConfigError, "what this command has written"))
+        earlier = msgspec.json.decode(text, type=Manifest)
     except OSError as error:
         raise ConfigError(f"{folder} cannot be used: {(error.strerror or str(error)).lower()}") from None
     except msgspec.MsgspecError as error:

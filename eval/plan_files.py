@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
+from mrta_zoo.eval.console import warn
 from mrta_zoo.io import read_plan, read_trace
 from mrta_zoo.io.json_format import json_kind
+from mrta_zoo.paths import composed, suffix_of
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
 
@@ -19,7 +20,7 @@ def read_any_plan(path: Path, scenario: Scenario) -> Plan | None:
     Raises:
         MrtaError: if it is malformed.
     """
-    if path.suffix.lower() != ".json":
+    if suffix_of(path) != ".json":
         return None
     plan = read_trace(path).plan() if json_kind(path) == "mrta_zoo.trace" else read_plan(path)
     check_name(path, plan, scenario)
@@ -28,5 +29,5 @@ def read_any_plan(path: Path, scenario: Scenario) -> Plan | None:
 
 def check_name(path: Path, plan: Plan, scenario: Scenario) -> None:
     """Say so on standard error if a plan bears the name of another scenario; files may have been renamed."""
-    if plan.scenario and scenario.name and plan.scenario != scenario.name:
-        print(f"warning: {path} is a plan for {plan.scenario}; the scenario is {scenario.name}", file=sys.stderr)
+    if plan.scenario and scenario.name and composed(plan.scenario) != composed(scenario.name):
+        warn(f"{path} is a plan for {plan.scenario}; the scenario is {scenario.name}")

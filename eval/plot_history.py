@@ -6,14 +6,21 @@
 from __future__ import annotations
 
 import csv
+import io
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
 import tyro
 
-from mrta_zoo.errors import ConfigError
+from mrta_zoo.atomic import replacing
+from mrta_zoo.errors import ConfigError, MrtaError
+from mrta_zoo.eval.destination import check_destination
+from mrta_zoo.eval.plot_plan import check_picture_format
 from mrta_zoo.extras import require
+from mrta_zoo.io.source import read_text
+from mrta_zoo.paths import suffix_of
 from mrta_zoo.render.style import plain
 
 try:
@@ -47,9 +54,9 @@ def read_history(path: Path) -> LearningCurve:
         ConfigError: if there is none, or it is malformed.
     """
     file = path / "history.csv" if path.is_dir() else path
+    text = read_text(file, ConfigError, "a run's history.csv")
     try:
-        with file.open(newline="", encoding="utf-8") as lines:
-            rows = list(csv.DictReader(lines))
+        rows = [row for row in csv.DictReader(io.StringIO(text)) if any(row.values())]
         if not rows:
             raise ValueError("it has no rows")
         return LearningCurve(
@@ -58,8 +65,6 @@ def read_history(path: Path) -> LearningCurve:
             updates=tuple(int(row["update"]) for row in rows),
             completion=tuple(float(row["completion"]) for row in rows),
         )
-    except OSError as error:
-        raise ConfigError(f"{file}: {(error.strerror or str(error)).lower()}; expected a run's history.csv") from None
     except (KeyError, TypeError, ValueError, csv.Error) as error:
         raise ConfigError(f"{file}: not a run's history.csv ({error})") from None
 
@@ -97,8 +102,15 @@ def main(
         out: the picture, .png, .svg or .pdf.
         by: what goes along: episodes sampled, or updates.
     """
-    draw_history([read_history(run) for run in runs], by).savefig(out, dpi=130)
+    check_destination(out)
+    check_picture_format(out)
+    figure = draw_history([read_history(run) for run in runs], by)
+    with replacing(out) as partial:
+        figure.savefig(partial, format=suffix_of(out)[1:], dpi=130)
 
 
 if __name__ == "__main__":
-    tyro.cli(main)
+    try:
+        tyro.cli(main)
+    except (MrtaError, OSError) as error:
+        sys.exit(f"error: {error}")

@@ -13,6 +13,7 @@ import msgspec
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.source import read_text, write_text
+from mrta_zoo.paths import composed
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -62,7 +63,7 @@ class RowsFile(Generic[RowType]):
         self.rows.append(row)
 
     def _read(self) -> None:
-        text = read_text(self.path, ConfigError) if self.path.stat().st_size else ""
+        text = composed(read_text(self.path, ConfigError)) if self.path.stat().st_size else ""
         whole = text[: text.rfind("\n") + 1]
         if whole != text:
             write_text(whole, self.path, ConfigError)
@@ -76,6 +77,8 @@ class RowsFile(Generic[RowType]):
             raise ConfigError(f"{self.path}, line 1: the columns are {header}; expected {self._columns}")
         self._whole_header = True
         for number, cells in enumerate(lines, start=2):
+            if not any(cells):  # as spreadsheets leave them
+                continue
             self.rows.append(self._row(cells, f"{self.path}, line {number}"))
 
     def _row(self, cells: list[str], where: str) -> RowType:

@@ -29,7 +29,7 @@ from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.io import read_scenario, read_trace
 from mrta_zoo.io.outputs import Outputs
-from mrta_zoo.io.source import read_text
+from mrta_zoo.io.source import decode, read_text
 from mrta_zoo.policies.registry import method_names
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import Trace
@@ -174,9 +174,11 @@ def _advisor_again(trace: Trace, name: str | None, planning: PlanningFlags) -> A
 def _script(command: Step) -> tuple[str, list[str]] | None:
     """What messages call the script, and its lines; None to ask at the terminal."""
     if command.script is not None and command.script != "-":
-        return command.script, read_text(command.script, ConfigError).split("\n")
+        return command.script, read_text(command.script, ConfigError, "commands, one a line").split("\n")
     if sys.stdin is None:
         raise ConfigError("standard input is closed; expected a terminal, commands there, or --script FILE")
     if command.script == "-" or not sys.stdin.isatty():
-        return "standard input", sys.stdin.read().split("\n")
+        bytes_of = getattr(sys.stdin, "buffer", None)  # read as files are, whatever the terminal's encoding
+        text = sys.stdin.read() if bytes_of is None else decode(bytes_of.read(), "standard input", ConfigError)
+        return "standard input", text.split("\n")
     return None

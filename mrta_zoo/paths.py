@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import unicodedata
 from pathlib import Path
 
 from mrta_zoo.errors import MrtaError
@@ -24,6 +25,11 @@ def check_no_url(path: str | os.PathLike[str], error: type[MrtaError]) -> None:
     """
     if url := _URL.fullmatch(os.fspath(path)):
         raise error(f"{url['scheme']}://{url['rest']} is a URL; expected the path of a file or folder on this computer")
+
+
+def composed(text: str) -> str:
+    """Text with accents in one character each (NFC), as names are compared: some systems write files' names in two."""
+    return unicodedata.normalize("NFC", text)
 
 
 def is_utf8(text: str) -> bool:

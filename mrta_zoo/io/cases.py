@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+import warnings
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from pathlib import Path
 
 from mrta_zoo.errors import ScenarioError
@@ -13,9 +15,14 @@ from mrta_zoo.io.files import read_scenario
 from mrta_zoo.io.json_format import is_other_json
 from mrta_zoo.io.source import StrPath, check_name, count, shown
 from mrta_zoo.io.table import read_table
+from mrta_zoo.paths import check_no_url, composed, suffix_of
 from mrta_zoo.scenario import Scenario
 
 REFERENCE_FILE = "reference.csv"
+ALIKE = 0.8
+"""How much alike, from 0 to 1, names are of which one may be a misspelling of the other."""
+LISTED = 3
+"""Names that are listed before the others are only counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,13 +42,19 @@ class Case:
     reference: Mapping[str, int] = field(default_factory=dict, hash=False)
 
 
-def read_cases(folder: StrPath) -> list[Case]:
+def read_cases(folder: StrPath, tell: Callable[[str], None] | None = None) -> list[Case]:
     """All cases of a folder in natural order of their names (``a2`` before ``a10``).
 
     Cases are TAPTC task files ``group*/*.txt`` (agent files in ``agent/``), and ``*.json`` and ``*.csv``
-    scenarios in the folder itself. JSON files of this package that are no scenarios, such as plans, are passed
-    over. If there is a ``reference.csv`` with columns ``case,tasks,robots`` and one for each method, its whole
-    numbers of completed tasks become the references; rows of other cases are passed over, and a cell may be empty.
+    scenarios in the folder itself, in small or capital letters. JSON files of this package that are no scenarios,
+    such as plans, are passed over. If there is a ``reference.csv`` with columns ``case,tasks,robots`` and one for
+    each method, its whole numbers of completed tasks become the references; rows of other cases are passed over, and
+    a cell may be empty.
+
+    Args:
+        folder: where they are.
+        tell: is told, in a sentence, of rows of the reference table that seem to be for cases of the folder, but match
+            none; by default `warnings.warn`.
 
     Raises:
         ScenarioError: if there is no such folder, it holds no case, two cases share a name, or a file is
@@ -50,19 +63,20 @@ def read_cases(folder: StrPath) -> list[Case]:
     root = Path(folder)
     # os.path answers False where pathlib raises: without permission, or for a name that no file can have.
     if not os.path.isdir(root):
+        check_no_url(folder, ScenarioError)
         problem = "is not a folder" if os.path.exists(root) else "does not exist"
         raise ScenarioError(f"{root} {problem}; expected a folder of cases")
     try:
-        os.listdir(root)  # glob would find nothing in a folder that may not be read
-        paths = [path for pattern in ("group*/*.txt", "*.json", "*.csv") for path in sorted(root.glob(pattern))]
+        paths = _files_of_cases(root)
     except OSError as error:
         raise ScenarioError(
             f"{root} cannot be listed: {(error.strerror or str(error)).lower()}; expected a folder of cases"
         ) from None
+    tables = [path for path in paths if path.name.lower() == REFERENCE_FILE]
     sources: dict[str, Path] = {}
     scenarios: dict[str, Scenario] = {}
     for path in paths:
-        if path.name == REFERENCE_FILE or path.name.startswith(".") or is_other_json(path):
+        if path in tables or is_other_json(path):
             continue
         scenario = read_scenario(path)
         if scenario.name in sources:
@@ -74,8 +88,12 @@ def read_cases(folder: StrPath) -> list[Case]:
         scenarios[scenario.name] = scenario
     if not scenarios:
         raise ScenarioError(f"{root} holds no cases; expected group*/*.txt (TAPTC), *.json or *.csv files")
-    reference_path = root / REFERENCE_FILE
-    references = read_reference(reference_path, scenarios) if os.path.lexists(reference_path) else {}
+    if len(tables) > 1:
+        raise ScenarioError(f"{tables[1]}: there is {tables[0].name}, too; expected one reference table")
+    references = read_reference(tables[0], scenarios) if tables else {}
+    if strangers := _strangers(references, scenarios):
+        sentence = f"{tables[0]}: {strangers}"
+        tell(sentence) if tell else warnings.warn(sentence, stacklevel=2)
     cases = []
     for name in sorted(scenarios, key=_natural):
         reference = references.get(name, {})
@@ -84,8 +102,30 @@ def read_cases(folder: StrPath) -> list[Case]:
     return cases
 
 
+def _files_of_cases(root: Path) -> list[Path]:
+    """Files that may hold a case or the reference table, hidden ones left out."""
+    entries = sorted(root.iterdir())
+    groups = [entry for entry in entries if entry.name.lower().startswith("group") and os.path.isdir(entry)]
+    found = [path for group in groups for path in sorted(group.iterdir()) if suffix_of(path) == ".txt"]
+    for suffix in (".json", ".csv"):
+        found += [path for path in entries if suffix_of(path) == suffix]
+    return [path for path in found if not path.name.startswith(".")]
+
+
+def _strangers(rows: Mapping[str, object], cases: Mapping[str, object]) -> str:
+    """What to say of rows of the reference table that match no case; nothing if it is just that of a larger folder."""
+    strange, without = [name for name in rows if name not in cases], [name for name in cases if name not in rows]
+    if not strange or (not without and len(strange) > len(cases)):
+        return ""
+    meant = {close[0]: name for name in without if (close := get_close_matches(name, strange, 1, ALIKE))}
+    strange.sort(key=lambda name: name not in meant)
+    listed = ", ".join(map(shown, strange[:LISTED])) + (f" and {len(strange) - LISTED} more" * (len(strange) > LISTED))
+    hints = [f"; is {shown(name)} meant for {shown(meant[name])}?" for name in strange[:LISTED] if name in meant]
+    return f"no case of the folder is called {listed}{''.join(hints)}"
+
+
 def read_reference(path: StrPath, scenarios: Mapping[str, Scenario]) -> dict[str, dict[str, int]]:
-    """Tasks completed by each method, by case, from a reference table; only of the given scenarios.
+    """Tasks completed by each method, by case, from a reference table, which may have rows of other scenarios, too.
 
     Raises:
         ScenarioError: if the table is malformed or contradicts a scenario's numbers of tasks or robots.
@@ -103,6 +143,7 @@ def read_reference(path: StrPath, scenarios: Mapping[str, Scenario]) -> dict[str
     references: dict[str, dict[str, int]] = {}
     for where, (name, *numbers) in rows:
         check_name(name, where, "case", ScenarioError)
+        name = composed(name)
         if name in references:
             raise ScenarioError(f"{where}: case {shown(name)} appears twice; expected it once")
         tasks, robots = (
@@ -124,7 +165,7 @@ def read_reference(path: StrPath, scenarios: Mapping[str, Scenario]) -> dict[str
                 if said != is_so:
                     raise ScenarioError(f"{where}: {what} is {said}; expected {is_so} as in the case {name}")
         references[name] = completed
-    return {name: completed for name, completed in references.items() if name in scenarios}
+    return references
 
 
 def _natural(name: str) -> tuple[list[tuple[str, int, str]], str]:

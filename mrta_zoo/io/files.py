@@ -10,6 +10,7 @@ from mrta_zoo.io.json_format import read_json_part, write_json
 from mrta_zoo.io.parts import Part, assemble
 from mrta_zoo.io.source import StrPath, shown
 from mrta_zoo.io.taptc import find_agent_file, read_agent_part, read_task_part, write_taptc
+from mrta_zoo.paths import suffix_of
 from mrta_zoo.scenario import Scenario
 
 
@@ -24,7 +25,7 @@ def read_scenario(path: StrPath, agents: StrPath | None = None) -> Scenario:
     Raises:
         ScenarioError: with one sentence that names the file, and the line or field, that is wrong.
     """
-    suffix = Path(path).suffix.lower()
+    suffix = suffix_of(path)
     if suffix == ".json":
         return assemble(read_json_part(path), _agents(agents))
     if suffix == ".csv":
@@ -42,7 +43,7 @@ def write_scenario(scenario: Scenario, path: StrPath) -> None:
         ScenarioError: if the format cannot express the scenario or the file cannot be written.
     """
     path = Path(path)
-    suffix = path.suffix.lower()
+    suffix = suffix_of(path)
     if suffix == ".json":
         write_json(scenario, path)
     elif suffix == ".csv":
@@ -61,7 +62,7 @@ def write_scenario(scenario: Scenario, path: StrPath) -> None:
 def _agents(path: StrPath | None) -> Part | None:
     if path is None:
         return None
-    suffix = Path(path).suffix.lower()
+    suffix = suffix_of(path)
     if suffix == ".json":
         raise ScenarioError(f"{path} has the suffix '.json'; expected a .csv or TAPTC agent file")
     return read_csv_part(path) if suffix == ".csv" else read_agent_part(path)

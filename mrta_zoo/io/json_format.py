@@ -13,8 +13,9 @@ from msgspec import Meta
 
 from mrta_zoo.errors import PlanError, ScenarioError
 from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow
-from mrta_zoo.io.source import StrPath
+from mrta_zoo.io.source import StrPath, read_text
 from mrta_zoo.io.strict_json import read_document, write_document
+from mrta_zoo.paths import composed, suffix_of
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
 
@@ -157,11 +158,11 @@ def is_other_json(path: Path) -> bool:
 
 def json_kind(path: Path) -> str:
     """The format that a ``.json`` file says it has, such as "mrta_zoo.plan"; empty if it does not say."""
-    if path.suffix != ".json":
+    if suffix_of(path) != ".json":
         return ""
     try:
-        return msgspec.json.decode(path.read_bytes(), type=_Head).format
-    except (OSError, msgspec.MsgspecError, UnicodeDecodeError, RecursionError):
+        return msgspec.json.decode(read_text(path, ScenarioError), type=_Head).format
+    except (ScenarioError, msgspec.MsgspecError, RecursionError):
         return ""  # the reader will say what is wrong with it
 
 
@@ -209,7 +210,7 @@ def read_plan(path: StrPath) -> Plan:
         PlanError: if the file is missing or malformed.
     """
     data = read_document(path, PlanJson, _PARTS, PlanError)
-    return Plan(routes=data.routes, scenario=data.scenario, method=data.method, bound=data.bound)
+    return Plan(routes=data.routes, scenario=composed(data.scenario), method=data.method, bound=data.bound)
 
 
 def write_plan(

@@ -12,6 +12,7 @@ import numpy as np
 
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.source import check_name, shown
+from mrta_zoo.paths import composed
 from mrta_zoo.scenario import BOUNDS, LARGEST, SMALLEST, FloatArray, Scenario, map_origin_for
 
 _NUMBER = re.compile(r"[0-9]{1,18}")
@@ -122,7 +123,7 @@ def assemble(main: Part, agents: Part | None) -> Scenario:
         capacity=[row.capacity for row in agents.robots],  # type: ignore[arg-type]
         speed=[row.speed for row in agents.robots],  # type: ignore[arg-type]
         map_size=size,
-        name=main.name,
+        name=composed(main.name),
         map_origin=origin,
         task_names=_names(main.tasks, "task"),
         robot_names=_names(agents.robots, "robot"),

@@ -12,7 +12,8 @@ from mrta_zoo.io.source import StrPath, read_text, shown
 def read_table(path: StrPath, error: type[MrtaError]) -> list[tuple[str, list[str]]]:
     """Where each row of a CSV file stands, and its cells; at least the header.
 
-    Blank lines are skipped; every other row has as many cells as the header.
+    Rows and last columns with nothing in them, as spreadsheets leave them, are passed over; every row has as many
+    cells as the header.
 
     Args:
         path: the file.
@@ -25,17 +26,30 @@ def read_table(path: StrPath, error: type[MrtaError]) -> list[tuple[str, list[st
     table: list[tuple[str, list[str]]] = []
     try:
         for cells in reader:
-            if not any(cell.strip() for cell in cells) and len(cells) <= 1:
+            stripped = [cell.strip() for cell in cells]
+            if not any(stripped):
                 continue
             where = f"{path}, line {reader.line_num}"
+            if not table:
+                _check_separator(where, stripped, error)
             if table and len(cells) != len(table[0][1]):
                 raise error(
                     f"{where}: {shown(','.join(cells))} has {len(cells)} cells; "
                     f"expected {len(table[0][1])} as in the header"
                 )
-            table.append((where, [cell.strip() for cell in cells]))
+            table.append((where, stripped))
     except csv.Error as problem:
         raise error(f"{path}, line {reader.line_num}: {problem}; expected cells separated by commas") from None
     if not table:
         raise error(f"{path} has no rows; expected a header row")
-    return table
+    width = max(index for _, cells in table for index, cell in enumerate(cells, start=1) if cell)
+    return [(where, cells[:width]) for where, cells in table]
+
+
+def _check_separator(where: str, header: list[str], error: type[MrtaError]) -> None:
+    for separator, name in ((";", "semicolons"), ("\t", "tabs")):
+        if len(header) == 1 and separator in header[0]:
+            raise error(
+                f"{where}: cells are separated by {name}; expected commas, and points in numbers (1.5), "
+                "as spreadsheets export them in English"
+            )

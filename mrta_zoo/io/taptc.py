@@ -20,7 +20,7 @@ from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, assemble, in_id_o
 from mrta_zoo.io.source import StrPath, count, number, read_text, shown, write_text
 from mrta_zoo.scenario import Scenario, map_origin_for
 
-_CASE_NAME = re.compile(r"r[0-9]+(a[0-9]+i[0-9]+)")
+_CASE_NAME = re.compile(r"r[0-9]+(a[0-9]+i[0-9]+)", re.IGNORECASE)
 _TASK_LINE = "id x y workload deadline"
 _AGENT_LINE = "id x y capacity"
 
@@ -51,8 +51,10 @@ def find_agent_file(task_path: StrPath) -> Path:
     folders = (Path(os.path.normpath(path.parent / "..")) / "agent", path.parent / "agent")
     candidates = [folder / name for folder in folders for name in names]
     for candidate in candidates:
-        if os.path.isfile(candidate):  # unlike Path.is_file it is also False without permission
-            return candidate
+        for suffix in dict.fromkeys((path.suffix, path.suffix.lower(), path.suffix.upper())):
+            there = candidate.with_suffix(suffix)
+            if os.path.isfile(there):  # unlike Path.is_file it is also False without permission
+                return there
     raise ScenarioError(
         f"{path}: there is no agent file; looked for {', '.join(map(str, candidates))}; name one with --agents"
     )

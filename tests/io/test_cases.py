@@ -7,7 +7,7 @@ import pytest
 
 from mrta_zoo import Plan, Scenario
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.io import read_cases, write_plan, write_scenario
+from mrta_zoo.io import read_cases, write_plan, write_scenario, write_taptc
 
 
 def scenario(name: str, tasks: int = 3) -> Scenario:
@@ -34,7 +34,9 @@ def test_reference(folder: Path) -> None:
     (folder / "reference.csv").write_text(
         "case,tasks,robots,nearest,pyvrp\nc1,3,1,2,3\nelsewhere,100,7,50,60\nc9,3,1,0,\nc10,3,1,,\n"
     )
-    cases = {case.name: case for case in read_cases(folder)}
+    told: list[str] = []
+    cases = {case.name: case for case in read_cases(folder, told.append)}
+    assert told == [f"{folder / 'reference.csv'}: no case of the folder is called 'elsewhere'"]
     assert cases["c1"].reference == {"nearest": 2, "pyvrp": 3}
     assert cases["c1"].best_known == 3
     assert cases["c9"].reference == {"nearest": 0}
@@ -129,3 +131,65 @@ def test_a_reference_that_leads_nowhere(folder: Path) -> None:
     (folder / "reference.csv").symlink_to(folder / "absent.csv")
     with pytest.raises(ScenarioError, match=r"reference\.csv: there is no such file"):
         read_cases(folder)
+
+
+@pytest.mark.parametrize(("file", "row"), [("cafe\u0301", "caf\u00e9"), ("caf\u00e9", "cafe\u0301")])
+def test_accents_may_be_written_in_two_ways(tmp_path: Path, file: str, row: str) -> None:
+    """macOS names files in one way, spreadsheets write the other; nobody sees the difference."""
+    write_scenario(scenario(file), tmp_path / f"{file}.csv")
+    (tmp_path / "reference.csv").write_text(f"case,tasks,robots,m\n{row},3,1,2\n", encoding="utf-8")
+    [case] = read_cases(tmp_path)
+    assert (case.name, case.best_known) == ("caf\u00e9", 2)
+    write_scenario(scenario(row), tmp_path / "other.json")
+    with pytest.raises(ScenarioError, match="the case is called 'caf\u00e9', as in"):
+        read_cases(tmp_path)
+
+
+def test_rows_that_match_no_case_are_told(folder: Path) -> None:
+    def told(*names: str) -> list[str]:
+        sentences: list[str] = []
+        rows = "".join(f"{name},3,1,2\n" for name in names)
+        (folder / "reference.csv").write_text("case,tasks,robots,m\n" + rows)
+        read_cases(folder, sentences.append)
+        return [each.removeprefix(f"{folder / 'reference.csv'}: ") for each in sentences]
+
+    def no_case(said: str) -> list[str]:
+        return [f"no case of the folder is called {said}"]
+
+    assert told("c1", "c2", "c9", "c10") == told("c1", "c9") == []
+    assert told("c1", "c2", "c9", "c10", "x") == no_case("'x'")
+    assert told("c1", "c2", "c9", "c_10") == no_case("'c_10'; is 'c_10' meant for 'c10'?")
+    assert told("c1", "c2", "c9", "b1", "b2", "b3", "C010") == no_case("'b1', 'b2', 'b3' and 1 more")
+    assert told("c1", "c2", "c9", "b1", "b2", "b3", "c010") == no_case(
+        "'c010', 'b1', 'b2' and 1 more; is 'c010' meant for 'c10'?"
+    )
+    larger = [f"d{index}" for index in range(5)]
+    assert told("c1", "c2", "c9", "c10", *larger) == [], "the table of a larger benchmark"
+    assert told("c1", "c2", "c9", *larger) == no_case("'d0', 'd1', 'd2' and 2 more")
+    with pytest.warns(UserWarning, match="no case of the folder is called 'd0', 'd1'"):
+        read_cases(folder)
+
+
+def test_suffixes_may_be_in_capital_letters(tmp_path: Path) -> None:
+    (tmp_path / "Group1").mkdir()
+    write_scenario(scenario("a"), tmp_path / "a.csv")
+    write_scenario(scenario("b"), tmp_path / "b.json")
+    write_taptc(scenario("c"), tmp_path / "Group1" / "c.txt", tmp_path / "c.txt")
+    (tmp_path / "agent").mkdir()
+    (tmp_path / "c.txt").rename(tmp_path / "agent" / "c.txt")
+    write_plan(Plan.of([[0]]), tmp_path / "plan.json")
+    (tmp_path / "Reference.csv").write_text("case,tasks,robots,m\na,3,1,2\n")
+    for path in [*tmp_path.rglob("*.*")]:
+        path.rename(path.with_name(path.stem + path.suffix.upper()))
+    cases = read_cases(tmp_path)
+    assert [(case.name, case.best_known) for case in cases] == [("a", 2), ("b", None), ("c", None)]
+    (tmp_path / "agent" / "c.TXT").rename(tmp_path / "agent" / "c.txt")
+    assert read_cases(tmp_path) == cases
+
+
+def test_a_second_reference_table_is_refused(folder: Path) -> None:
+    for name in ("reference.csv", "REFERENCE.CSV"):
+        (folder / name).write_text("case,tasks,robots,m\nc1,3,1,2\n")
+    if len([*folder.glob("[rR]*")]) == 2:  # capital letters count here
+        with pytest.raises(ScenarioError, match=r"reference\.csv: there is REFERENCE\.CSV, too; expected one"):
+            read_cases(folder)

@@ -54,6 +54,11 @@ def test_content(tmp_path: Path) -> None:
         FULL + "\n\n",
         FULL.replace(",", " , "),
         FULL.replace("task,1,", 'task,"1",'),
+        # as spreadsheets leave rows and columns that something was deleted from
+        ",,,,,,\n" + FULL.replace("robot,7", ',,,,,,\n , ,,,,,\n"","",,,,,""\nrobot,7') + ",,,,,,\n,,,,,,\n",
+        FULL.replace("\n", ",,\n"),
+        FULL.replace("\n", ', ,""\n') + ",,,,,,,,\n",
+        "\ufeff" + FULL,
         # columns in another order, rows by id
         "id,speed,kind,y,x,capacity,workload,deadline\n"
         "1,,task,4,3,,6.5,50\n0,,task,2,1,,0,30\n,,map,20,10,,,\n1,0.5,robot,10,9,1,,\n0,,robot,8,7,2,,\n",

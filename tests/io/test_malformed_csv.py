@@ -14,8 +14,14 @@ BAD_CSV = [
     (TABLE.replace("kind", "type"), "line 1: there is no column 'type'; expected kind, x, y"),
     (
         TABLE.replace(",", ";"),
-        "line 1: there is no column 'kind;x;y;deadline;workload;",
+        "line 1: cells are separated by semicolons; expected commas, and points in numbers (1.5)",
     ),
+    (
+        TABLE.replace("\n", ";\n").replace(",", ";").replace("20", "20,5"),
+        "line 1: cells are separated by semicolons; expected commas, and points in numbers (1.5)",
+    ),
+    (TABLE.replace(",", "\t"), "line 1: cells are separated by tabs; expected commas"),
+    (TABLE.replace("\n", ",\n").replace("100,20,,,", "100,20,,,7"), "line 1: there is no column ''; expected kind"),
     (TABLE.replace("deadline", "x"), "line 1: column 'x' appears twice; expected each column once"),
     ("kind,x\ntask,1\n", "line 1: column 'y' is missing; expected kind, x, y"),
     (TABLE.removeprefix("kind,x,y,deadline,workload,capacity,speed\n"), "line 1: there is no column 'map'"),

@@ -99,7 +99,7 @@ def test_damaged_files_are_read_or_refused(tmp_path: Path, kind: str) -> None:
         "cas.csv": lambda: read_scenario(tmp_path / "cas.csv"),
         "cas.json": lambda: read_scenario(tmp_path / "cas.json"),
         "plan.json": lambda: read_plan(tmp_path / "plan.json"),
-        "reference.csv": lambda: read_cases(tmp_path),
+        "reference.csv": lambda: read_cases(tmp_path, [].append),
     }
     if kind == "plan.json":
         write_plan(Plan.of([[0, 5, 1], [], [7, 3]], "cas", "nearest"), tmp_path / kind)
