@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mrta_zoo.errors import MrtaError
 
-_URL = re.compile(r"(?P<scheme>[a-z][a-z0-9+.-]+):/+(?P<rest>.*)", re.IGNORECASE | re.DOTALL)
+_URL = re.compile(r"[a-z][a-z0-9+.-]+:/", re.IGNORECASE)  # of a drive there is one letter
 
 
 def suffix_of(path: str | os.PathLike[str]) -> str:
@@ -23,8 +23,10 @@ def check_no_url(path: str | os.PathLike[str], error: type[MrtaError]) -> None:
     Raises:
         error: if it is one.
     """
-    if url := _URL.fullmatch(os.fspath(path)):
-        raise error(f"{url['scheme']}://{url['rest']} is a URL; expected the path of a file or folder on this computer")
+    text = os.fspath(path)
+    if _URL.match(text):
+        url = text if "://" in text else text.replace(":/", "://", 1)
+        raise error(f"{url} is a URL; expected the path of a file or folder on this computer") from None
 
 
 def composed(text: str) -> str:

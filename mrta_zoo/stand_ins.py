@@ -22,10 +22,16 @@ def stand_in(data: bytes) -> str:
     return "" if head.strip(b"\0") else "is empty; expected the file itself"
 
 
-def stand_in_at(path: str | os.PathLike[str]) -> str:
-    """As `stand_in`, of a file; also "" if it cannot be read."""
+def why_unreadable(path: str | os.PathLike[str], otherwise: object) -> str:
+    """The end of a sentence on a file that cannot be read: ": it is a pointer of Git LFS; …", or " (otherwise)".
+
+    Args:
+        path: the file.
+        otherwise: what there is to say if it is what it should be.
+    """
     try:
         with open(path, "rb") as file:
-            return stand_in(file.read(HEAD))
+            instead = stand_in(file.read(HEAD))
     except (OSError, ValueError):
-        return ""
+        instead = ""
+    return f": it {instead}" if instead else f" ({otherwise})"

@@ -23,7 +23,7 @@ from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.policy_files import info_file
 from mrta_zoo.policies.sharing import USUAL_KINDS, Network, Sharing, build_network
 from mrta_zoo.rules import MaskRule
-from mrta_zoo.stand_ins import stand_in_at
+from mrta_zoo.stand_ins import why_unreadable
 
 T = TypeVar("T")
 
@@ -123,9 +123,7 @@ def read_tensors(path: Path) -> dict[str, torch.Tensor]:
     except FileNotFoundError:
         raise ConfigError(f"{path}: no such file; expected weights in a .safetensors file") from None
     except (SafetensorError, OSError, ValueError) as error:
-        instead = stand_in_at(path)
-        why = f": it {instead}" if instead else f" ({error})"
-        raise ConfigError(f"{path}: not a readable safetensors file{why}") from None
+        raise ConfigError(f"{path}: not a readable safetensors file{why_unreadable(path, error)}") from None
 
 
 def write_json(path: Path, value: Any) -> None:

@@ -29,6 +29,7 @@ import torch
 from mrta_zoo.atomic import replacing
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.config import NetworkConfig
+from mrta_zoo.stand_ins import why_unreadable
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.experts import read_plans
 from mrta_zoo.train.reinforce import Reinforce, RunOptions, Update, Validation
@@ -260,7 +261,8 @@ def _resume(out: Path, run: Reinforce) -> float:
     except ConfigError:
         raise
     except (OSError, ValueError, KeyError, TypeError, RuntimeError, EOFError, zipfile.BadZipFile) as error:
-        raise ConfigError(f"{path}: not what a run leaves to go on with ({type(error).__name__})") from None
+        why = why_unreadable(path, type(error).__name__)
+        raise ConfigError(f"{path}: not what a run leaves to go on with{why}") from None
     if not 0 <= run.update <= run.config.total_updates or not run.history:
         raise ConfigError(
             f"{path}: update is {run.update}; expected at most {run.config.total_updates}, validated before"

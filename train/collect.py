@@ -15,6 +15,7 @@ import torch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.records import write_records
 from mrta_zoo.policies.weights import build_with, read_json, save_policy
+from mrta_zoo.stand_ins import why_unreadable
 from mrta_zoo.train.checkpoint import info_of
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.experts import UNREADABLE
@@ -88,7 +89,8 @@ def _read_weights(path: Path) -> tuple[dict[str, np.ndarray], BareState]:
     except FileNotFoundError:
         raise ConfigError(f"{path}: no such file; expected what mrta_zoo.train.bare leaves") from None
     except (*UNREADABLE, AttributeError, NotImplementedError, OverflowError, tokenize.TokenError) as error:
-        raise ConfigError(f"{path}: not what mrta_zoo.train.bare leaves ({type(error).__name__})") from None
+        why = why_unreadable(path, type(error).__name__)
+        raise ConfigError(f"{path}: not what mrta_zoo.train.bare leaves{why}") from None
     for name, array in arrays.items():
         if not isinstance(array, np.ndarray) or array.dtype != np.float32:
             raise ConfigError(f"{path}: {name} is no array of float32")

@@ -21,6 +21,7 @@ from mrta_zoo.atomic import replacing
 from mrta_zoo.errors import ConfigError, PlanError
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.stand_ins import why_unreadable
 from mrta_zoo.train.child_process import pool_of
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, training_generator
@@ -127,7 +128,8 @@ def _read_shard(config: TrainConfig, path: Path) -> list[ExpertPlan]:
             index, robots, lengths, tasks = (file[name] for name in ("index", "robots", "lengths", "tasks"))
         numbered = list(zip(index.tolist(), _split(robots, lengths, tasks), strict=True))
     except UNREADABLE as error:
-        raise ConfigError(f"{path}: not a readable file of plans ({type(error).__name__})") from None
+        why = why_unreadable(path, type(error).__name__)
+        raise ConfigError(f"{path}: not a readable file of plans{why}") from None
     plans = []
     for number, routes in numbered:
         scenario = expert_scenario(config, number)
