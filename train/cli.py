@@ -171,7 +171,8 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
         TimeRemainingColumn(),
     )
     with (
-        SummaryWriter(str(folder / "tensorboard"), purge_step=first) as board,
+        # What an earlier session has shown beyond its last checkpoint comes again.
+        SummaryWriter(str(folder / "tensorboard"), purge_step=first + 1 if run.history else 0) as board,
         Progress(*columns, console=console, disable=not console.is_terminal) as progress,
     ):
         bar = progress.add_task("", total=config.total_updates, completed=first, rate=0.0, completion="-")
@@ -186,9 +187,12 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
                 board.add_scalar("train/learning_rate", event.learning_rate, event.update)
                 board.add_scalar("train/episodes_per_second", rate, event.update)
                 continue
-            board.add_scalar("validation/completion", event.completion, event.update)
-            board.add_scalar("validation/cost", event.cost, event.update)
-            _save(folder, run, now - begun)
+            try:
+                board.add_scalar("validation/completion", event.completion, event.update)
+                board.add_scalar("validation/cost", event.cost, event.update)
+                board.flush()  # before the checkpoint, after which they do not come again
+            finally:
+                _save(folder, run, now - begun)
             shown = f"{100 * event.completion:.2f} %"
             progress.update(bar, completion=shown)
             note = "  (baseline replaced)" if event.baseline_replaced else ""

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 import torch
+from filelock import FileLock
 from torch import Tensor
 
 from mrta_zoo.errors import ConfigError
@@ -81,6 +82,16 @@ def test_killed_run_resumes_to_the_same_bits(tmp_path: Path) -> None:
     train_command(["--out", str(killed), "--resume", "--threads", "1"])
     for file in ("policy.safetensors", "history.csv", "checkpoints/00000012/network.safetensors"):
         assert (killed / file).read_bytes() == (tmp_path / "straight" / file).read_bytes()
+
+
+def test_one_process_at_a_time(tmp_path: Path) -> None:
+    checkpoint.start(tmp_path, TINY)
+    with FileLock(tmp_path / ".lock"), pytest.raises(ConfigError, match="is in use by another run; expected to wait"):
+        train_command(["--out", str(tmp_path), "--resume"])
+    assert not (tmp_path / "checkpoints").exists()
+    train_command(["--out", str(tmp_path), "--resume"])
+    with FileLock(tmp_path / ".lock", timeout=0):
+        assert (tmp_path / "policy.json").exists()
 
 
 def test_half_written_checkpoint_is_ignored(tmp_path: Path) -> None:
