@@ -111,9 +111,8 @@ def solve_command(argv: Sequence[str]) -> None:
 
         check_destination(command.plot)
         check_picture_format(command.plot)
-    outputs = {"--out": command.out, "--plot": command.plot}
     read = {"the task file": command.taskfile, "the agent file": agent_file(command.taskfile, command.agents)}
-    check_distinct(outputs, {**read, **policy_files(command.method)})
+    check_distinct({"--out": command.out, "--plot": command.plot}, {**read, **policy_files(command.method)})
     scenario = read_scenario(command.taskfile, command.agents)
     with preparing():
         solver = command.planning.solver(command.method)

@@ -29,9 +29,10 @@ def write_report(report: Report, folder: Path) -> None:
         for section in report.sections:
             for picture in section.pictures:
                 save_figure(picture.figure, folder / picture.name)
-            for each in (*section.pictures, *section.tables):
-                text = each.data.to_csv(index=False, lineterminator="\n")
-                write_text(text, folder / f"{each.name}.csv", ConfigError)
+            behind = {picture.name: picture.data for picture in section.pictures}
+            behind |= {table.name: table.data for table in section.tables}
+            for name, data in behind.items():
+                write_text(data.to_csv(index=False, lineterminator="\n"), folder / f"{name}.csv", ConfigError)
         for suffix in ("html", "md"):
             write_text(render(report, suffix, folder), folder / f"report.{suffix}", ConfigError)
     except OSError as error:
