@@ -119,9 +119,14 @@ def _strangers(rows: Mapping[str, object], cases: Mapping[str, object]) -> str:
         return ""
     meant = {close[0]: name for name in without if (close := get_close_matches(name, strange, 1, ALIKE))}
     strange.sort(key=lambda name: name not in meant)
-    listed = ", ".join(map(shown, strange[:LISTED])) + (f" and {len(strange) - LISTED} more" * (len(strange) > LISTED))
+    rowless = f", and there is no row for {_listed(without)}" if without else ""
     hints = [f"; is {shown(name)} meant for {shown(meant[name])}?" for name in strange[:LISTED] if name in meant]
-    return f"no case of the folder is called {listed}{''.join(hints)}"
+    return f"no case of the folder is called {_listed(strange)}{rowless}{''.join(hints)}"
+
+
+def _listed(names: list[str]) -> str:
+    more = f" and {len(names) - LISTED} more" if len(names) > LISTED else ""
+    return ", ".join(map(shown, names[:LISTED])) + more
 
 
 def read_reference(path: StrPath, scenarios: Mapping[str, Scenario]) -> dict[str, dict[str, int]]:

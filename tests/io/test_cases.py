@@ -36,7 +36,9 @@ def test_reference(folder: Path) -> None:
     )
     told: list[str] = []
     cases = {case.name: case for case in read_cases(folder, told.append)}
-    assert told == [f"{folder / 'reference.csv'}: no case of the folder is called 'elsewhere'"]
+    assert told == [
+        f"{folder / 'reference.csv'}: no case of the folder is called 'elsewhere', and there is no row for 'c2'"
+    ]
     assert cases["c1"].reference == {"nearest": 2, "pyvrp": 3}
     assert cases["c1"].best_known == 3
     assert cases["c9"].reference == {"nearest": 0}
@@ -158,14 +160,18 @@ def test_rows_that_match_no_case_are_told(folder: Path) -> None:
 
     assert told("c1", "c2", "c9", "c10") == told("c1", "c9") == []
     assert told("c1", "c2", "c9", "c10", "x") == no_case("'x'")
-    assert told("c1", "c2", "c9", "c_10") == no_case("'c_10'; is 'c_10' meant for 'c10'?")
-    assert told("c1", "c2", "c9", "b1", "b2", "b3", "C010") == no_case("'b1', 'b2', 'b3' and 1 more")
+    assert told("c1", "c2", "c9", "c_10") == no_case(
+        "'c_10', and there is no row for 'c10'; is 'c_10' meant for 'c10'?"
+    )
+    assert told("c1", "c2", "c9", "b1", "b2", "b3", "C010") == no_case(
+        "'b1', 'b2', 'b3' and 1 more, and there is no row for 'c10'"
+    )
     assert told("c1", "c2", "c9", "b1", "b2", "b3", "c010") == no_case(
-        "'c010', 'b1', 'b2' and 1 more; is 'c010' meant for 'c10'?"
+        "'c010', 'b1', 'b2' and 1 more, and there is no row for 'c10'; is 'c010' meant for 'c10'?"
     )
     larger = [f"d{index}" for index in range(5)]
     assert told("c1", "c2", "c9", "c10", *larger) == [], "the table of a larger benchmark"
-    assert told("c1", "c2", "c9", *larger) == no_case("'d0', 'd1', 'd2' and 2 more")
+    assert told("c1", "c2", "c9", *larger) == no_case("'d0', 'd1', 'd2' and 2 more, and there is no row for 'c10'")
     with pytest.warns(UserWarning, match="no case of the folder is called 'd0', 'd1'"):
         read_cases(folder)
 
