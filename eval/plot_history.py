@@ -19,7 +19,7 @@ from mrta_zoo.errors import ConfigError, MrtaError
 from mrta_zoo.eval.destination import check_destination
 from mrta_zoo.eval.plot_plan import check_picture_format
 from mrta_zoo.extras import require
-from mrta_zoo.io.source import read_text
+from mrta_zoo.io.source import check_name, read_text
 from mrta_zoo.paths import suffix_of
 from mrta_zoo.render.style import plain
 
@@ -55,6 +55,7 @@ def read_history(path: Path) -> LearningCurve:
     """
     file = path / "history.csv" if path.is_dir() else path
     text = read_text(file, ConfigError, "a run's history.csv")
+    check_name(path.stem, str(path), "the run's name", ConfigError)
     try:
         rows = [row for row in csv.DictReader(io.StringIO(text)) if any(row.values())]
         if not rows:

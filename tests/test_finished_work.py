@@ -206,7 +206,11 @@ def test_files_whose_names_are_not_utf8_are_refused_when_read(mission: Path, cap
 def test_a_policy_whose_name_cannot_be_written_is_refused(mission: Path) -> None:
     pytest.importorskip("torch")
     from mrta_zoo.policies.neural import load_policy
+    from mrta_zoo.train import checkpoint
+    from mrta_zoo.train.config import TrainConfig
 
+    with pytest.raises(ConfigError, match=r"the policy's name is 'a.x1bb'; expected text without control characters"):
+        checkpoint.start(Path("a\x1bb"), TrainConfig())  # before it is trained
     with pytest.raises(ConfigError, match=r"the policy's name is 'caf.udce9'; expected text in UTF-8"):
         load_policy("caf\udce9.safetensors")
     with pytest.raises(ConfigError, match=r"the policy's name is 'a.x1bb'; expected text without control characters"):

@@ -25,6 +25,7 @@ import torch
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.records import write_records
+from mrta_zoo.io.source import check_name
 from mrta_zoo.policies.weights import (
     PolicyInfo,
     load_state,
@@ -56,10 +57,11 @@ def start(folder: Path, config: TrainConfig, options: RunOptions | None = None) 
     """Begin a run in a new or empty folder.
 
     Raises:
-        ConfigError: if the folder already holds a run, or can't be written.
+        ConfigError: if the folder already holds a run, can't be written, or has a name that no policy can have.
     """
     if os.path.lexists(folder / "config.json") or _entries(folder / "checkpoints"):
         raise ConfigError(f"{folder} already holds a run; go on with it (--resume), or choose another folder")
+    check_name(folder.name, str(folder), "the policy's name", ConfigError)  # what plans will be signed with
     run = Reinforce(config, options=options)  # before anything is written: it may refuse the configuration
     try:
         folder.mkdir(parents=True, exist_ok=True)
