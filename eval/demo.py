@@ -22,6 +22,7 @@ from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.extras import require
 from mrta_zoo.io.records import write_records
 from mrta_zoo.mission import Mission
+from mrta_zoo.paths import make_folder
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.policies.registry import load_learned, make_solver
 from mrta_zoo.scenario import Scenario
@@ -164,7 +165,7 @@ def _listed(robots: Sequence[int]) -> str:
 
 def _make(folder: Path) -> None:
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
     except OSError as error:
         raise ConfigError(f"{folder} cannot be made: {(error.strerror or str(error)).lower()}") from None
 

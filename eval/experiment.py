@@ -24,7 +24,7 @@ from mrta_zoo.eval.runner import Solved, solve_cases
 from mrta_zoo.io import Case
 from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.io.source import read_text, write_text
-from mrta_zoo.paths import composed
+from mrta_zoo.paths import composed, make_folder
 from mrta_zoo.policies.policy_files import info_file, weights_file
 from mrta_zoo.policies.pretrained import pretrained_names, pretrained_path
 from mrta_zoo.policies.protocol import Solver
@@ -80,7 +80,7 @@ def open_experiment(folder: Path, manifest: Manifest) -> None:
                     f"{folder} is not empty and holds no {MANIFEST}; expected a folder that is new, empty, or of "
                     "this command"
                 )
-            folder.mkdir(parents=True, exist_ok=True)
+            make_folder(folder)
             _LOCKS.append(lock_folder(folder))
             write_text(json.dumps(asdict(manifest), indent=2, ensure_ascii=False) + "\n", path, ConfigError)
             return

@@ -39,7 +39,7 @@ class RowsFile(Generic[RowType]):
         self._optional = {field.name for field in fields(of) if field.default is None}
         self.rows: list[RowType] = []
         self._whole_header = False
-        if os.path.lexists(path):
+        if os.path.exists(path):
             self._read()
 
     def append(self, row: RowType) -> None:

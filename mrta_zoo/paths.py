@@ -1,4 +1,4 @@
-"""Paths as people give them: what their suffix says, and what is none."""
+"""Paths as people give them: what their suffix says, where they lead, and what is none."""
 
 from __future__ import annotations
 
@@ -15,6 +15,15 @@ _URL = re.compile(r"[a-z][a-z0-9+.-]+:/", re.IGNORECASE)  # of a drive there is 
 def suffix_of(path: str | os.PathLike[str]) -> str:
     """The suffix in small letters, such as ".csv"; "" if there is none."""
     return Path(path).suffix.lower()
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder, if it is not there, and those above it; where a link leads to, if `path` is one.
+
+    Raises:
+        OSError: if it cannot be made.
+    """
+    Path(os.path.realpath(path)).mkdir(parents=True, exist_ok=True)
 
 
 def check_no_url(path: str | os.PathLike[str], error: type[MrtaError]) -> None:

@@ -75,6 +75,17 @@ def test_a_script_steps_and_the_session_is_saved(mission: str, tmp_path: Path, c
     assert Path(mission).read_bytes() == scenario
 
 
+def test_a_session_may_be_a_link(mission: str, tmp_path: Path) -> None:
+    (tmp_path / "shared").mkdir()
+    link = tmp_path / "session.json"
+    link.symlink_to(tmp_path / "shared" / "s.json")  # which is not there yet
+    for decisions in (1, 2):
+        scenario = [mission, "--policy", "edf"] if decisions == 1 else []
+        assert main(["step", *scenario, "--session", str(link), "--script", script(tmp_path, "follow\n")]) == 0
+        assert link.is_symlink()
+        assert len(read_trace(tmp_path / "shared" / "s.json").choices) == decisions
+
+
 def test_standard_input_is_a_script(mission: str, capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
     for flags in (["--script", "-"], []):
         monkeypatch.setattr("sys.stdin", io.StringIO("f 2\nlog\n"))

@@ -26,6 +26,7 @@ import torch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.records import write_records
 from mrta_zoo.io.source import check_name
+from mrta_zoo.paths import make_folder
 from mrta_zoo.policies.weights import (
     PolicyInfo,
     load_state,
@@ -64,7 +65,7 @@ def start(folder: Path, config: TrainConfig, options: RunOptions | None = None) 
     check_name(folder.name, str(folder), "the policy's name", ConfigError)  # what plans will be signed with
     run = Reinforce(config, options=options)  # before anything is written: it may refuse the configuration
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         write_json(folder / "config.json", config)
     except OSError as error:
         raise ConfigError(f"{folder}: can't write a run there ({error.strerror})") from None

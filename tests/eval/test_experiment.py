@@ -228,3 +228,17 @@ def test_ctrl_c_says_how_to_go_on(
     monkeypatch.setattr(module, "parse", interrupted)
     assert main([command, "--out", "x"]) == 130
     assert capsys.readouterr().err == "the same command goes on where it stopped\ninterrupted\n"
+
+
+def test_an_experiment_may_lie_behind_links(tmp_path: Path) -> None:
+    (tmp_path / "out").symlink_to(tmp_path / "elsewhere")
+    manifest = make_manifest("test", {}, [], [])
+    open_experiment(tmp_path / "out", manifest)
+    open_experiment(tmp_path / "out", manifest)
+    (tmp_path / "out" / "rows.csv").symlink_to(tmp_path / "rows")
+    row = Row("a", "m", 1, 1, 1, 1.0, 0.0, 0.0, 0.0, 0.0)
+    for count in (1, 2):
+        RowsFile(tmp_path / "out" / "rows.csv", Row).append(row)
+        assert RowsFile(tmp_path / "rows", Row).rows == [row] * count
+    assert (tmp_path / "out").is_symlink()
+    assert (tmp_path / "elsewhere" / "rows.csv").is_symlink()
