@@ -10,18 +10,20 @@ from mrta_zoo.verify import Score
 
 
 def schedule_table(scenario: Scenario, score: Score) -> Table:
-    """A row for each task that is done, robot by robot; times in time units, tasks counted from 0."""
+    """A row for each task that is done, robot by robot; times in time units. What has no name is counted from 0."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("robot", "task", "arrival", "finish", "deadline", ""):
-        table.add_column(heading, justify="left" if heading in ("robot", "") else "right", no_wrap=True)
+        text = heading in ("robot", "") or (heading == "task" and bool(scenario.task_names))
+        named = heading in ("robot", "task")  # names are folded where there is no room for them, numbers never
+        table.add_column(heading, justify="left" if text else "right", no_wrap=not named, overflow="fold")
     for robot, visits in enumerate(score.schedule):
-        name = f"robot {robot}"
+        name = scenario.robot_name(robot)
         if not visits:
             table.add_row(name, "-", "-", "-", "-", "stays where it is", end_section=True)
         for index, visit in enumerate(visits):
             table.add_row(
                 name,
-                str(visit.task),
+                scenario.task_name(visit.task),
                 f"{visit.arrival:.2f}",
                 f"{visit.finish:.2f}",
                 f"{visit.deadline:g}",

@@ -50,6 +50,8 @@ class Score:
         distance: what all robots travelled together, in distance units.
         makespan: the latest finish, in time units; 0 if nothing is done.
         schedule: for each robot its visits, in order.
+        task_names: what people call the tasks, as in `Scenario`; empty if they have no names but their numbers.
+        robot_names: likewise for the robots.
     """
 
     tasks: int
@@ -59,6 +61,8 @@ class Score:
     distance: float
     makespan: float
     schedule: tuple[tuple[Visit, ...], ...]
+    task_names: tuple[str, ...] = ()
+    robot_names: tuple[str, ...] = ()
 
     def _repr_html_(self) -> str:
         """What a notebook shows: the scores, and what each robot did."""
@@ -66,10 +70,12 @@ class Score:
             f"{self.completed} of {self.tasks} tasks completed ({100 * self.completion:.1f} %), cost {self.cost:.3f}, "
             f"distance {self.distance:.1f}, makespan {self.makespan:.1f}"
         )
+        tasks = self.task_names or range(self.tasks)
+        robots = self.robot_names or range(len(self.schedule))
         rows = [
             (robot, f"{sum(visit.completed for visit in visits)} of {len(visits)}",
-             visits[-1].finish if visits else "-", " → ".join(str(visit.task) for visit in visits) or "-")
-            for robot, visits in enumerate(self.schedule)
+             visits[-1].finish if visits else "-", " → ".join(str(tasks[visit.task]) for visit in visits) or "-")
+            for robot, visits in zip(robots, self.schedule, strict=True)
         ]  # fmt: skip
         return table(title, ("robot", "completed", "last finish", "tasks"), rows)
 
@@ -103,6 +109,8 @@ def verify(scenario: Scenario, plan: Plan) -> Score:
         distance=math.fsum(leg for robot, route in enumerate(routes) for leg in _legs(scenario, robot, route)),
         makespan=makespan,
         schedule=schedule,
+        task_names=scenario.task_names,
+        robot_names=scenario.robot_names,
     )
 
 
@@ -143,7 +151,7 @@ def _routes(scenario: Scenario, plan: Plan) -> list[list[int]]:
     for robot, route in enumerate(plan.routes):
         routes.append([])
         for position, entry in enumerate(route):
-            place = f"position {position} of robot {robot}'s route"
+            place = f"position {position} of robot {scenario.robot_label(robot)}'s route"
             task = _integer(entry, place)
             if not 0 <= task < scenario.num_tasks:
                 raise PlanError(
@@ -151,7 +159,7 @@ def _routes(scenario: Scenario, plan: Plan) -> list[list[int]]:
                     f"0 to {scenario.num_tasks - 1}"
                 )
             if task in taken:
-                raise PlanError(f"task {task} is taken twice, at {taken[task]} and at {place}")
+                raise PlanError(f"task {scenario.task_label(task)} is taken twice, at {taken[task]} and at {place}")
             taken[task] = place
             routes[-1].append(task)
     return routes

@@ -13,7 +13,7 @@ import pygame
 
 from mrta_zoo.mission import Mission
 from mrta_zoo.palette import FAINT, GROUND, INK, MISSED, URGENCY, blend, robot_colour
-from mrta_zoo.render.canvas import Canvas, Point
+from mrta_zoo.render.canvas import Canvas, Point, fitted, text_width
 from mrta_zoo.render.panel import draw_panel
 from mrta_zoo.render.whereabouts import whereabouts
 from mrta_zoo.rules import Status
@@ -24,7 +24,9 @@ SIZE = (1040, 720)
 _LEFT, _TOP, _WIDTH, _HEIGHT = 40.0, 52.0, 636.0, 636.0
 _PANEL_LEFT = 704.0
 _MOST_NUMBERED = 150
-"""Tasks on the map that still get their number."""
+"""Tasks on the map that still get their number or name."""
+_LONGEST_NAME = 64.0
+"""Of a task on the map, in pixels."""
 _RECENT_LEGS = 4
 """Of each trail, drawn ever fainter; those before are as faint as the last of them."""
 
@@ -118,7 +120,9 @@ def _draw_tasks(canvas: Canvas, frame: _Frame, mission: Mission, detail: float) 
         else:
             canvas.cross(place, 4.2 * detail, MISSED, 2.2 * detail)
         if numbered:
-            canvas.text(str(task), (place[0] + 6, place[1] - 8), 13, FAINT)
+            name = fitted(scenario.task_name(task), str(task), 13, _LONGEST_NAME)
+            left = place[0] + 6 + text_width(name, 13) > _PANEL_LEFT  # or it would run into the column beside the map
+            canvas.text(name, (place[0] - 6 if left else place[0] + 6, place[1] - 8), 13, FAINT, align=float(left))
 
 
 def _round_step(about: float) -> float:

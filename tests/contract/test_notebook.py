@@ -8,7 +8,7 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
-from factories import small_scenario
+from factories import named_scenario, small_scenario
 from IPython.core.formatters import DisplayFormatter
 
 from mrta_zoo import Plan, Scenario, mrta_v0
@@ -87,3 +87,22 @@ def test_many_are_few_enough():
 def test_nothing_in_a_cell_is_markup():
     assert "<b>&lt;i&gt;</b>" in table("<i>", ["<u>"], [["<script>"]])
     assert "<script>" not in table("<i>", ["<u>"], [["<script>"]])
+
+
+def test_names_are_text():
+    named = named_scenario()
+    html = shown(named)
+    assert "<title>task pump #3 &lt;b&gt;, deadline 50</title>" in html
+    assert "<title>Bob &amp; Co</title>" in html
+    assert cells(shown(verify(named, Plan.of([(0, 1), (2,)])))) == [
+        ["Ann", "2 of 2", "45.0", "valve-A → pump #3 &lt;b&gt;"],
+        ["Bob &amp; Co", "1 of 1", "17.0", "=SUM(A1)"],
+    ]
+
+
+def test_a_map_may_lie_anywhere():
+    moved = Scenario(
+        SCENARIO.task_xy + 5e6, SCENARIO.deadline, SCENARIO.workload, SCENARIO.robot_xy + 5e6, SCENARIO.capacity,
+        map_size=(100, 50), map_origin=(5e6, 5e6),
+    )  # fmt: skip
+    assert '<circle cx="0.0" cy="96.0"' in shown(moved)  # as above
