@@ -16,12 +16,14 @@ from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.runner import Solved, evaluate, solve_and_score
-from mrta_zoo.eval.schedule import proven, schedule_table, totals
+from mrta_zoo.eval.schedule import missed, proven, schedule_table, totals
+from mrta_zoo.eval.schedule_file import write_schedule
 from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.eval.threads import cpu_threads
-from mrta_zoo.io import Case, PlanScore, ScheduledTask, read_cases, read_scenario, write_plan
+from mrta_zoo.io import Case, LeftOutTask, PlanScore, ScheduledTask, read_cases, read_scenario, write_plan
 from mrta_zoo.io.records import write_records
 from mrta_zoo.io.taptc import find_agent_file
+from mrta_zoo.left_out import left_out
 from mrta_zoo.policies.options import Decode
 from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.protocol import Solver
@@ -88,7 +90,11 @@ class Solve:
     """The robots: a TAPTC agent file, or .csv. Without it they are in TASKFILE or, for TAPTC, in agent/ beside it."""
     method: Annotated[str, arg(metavar="METHOD", help=METHOD_HELP)] = "capam-plus"
     out: Annotated[Path | None, optional("PLAN.json")] = None
-    """Write routes, schedule and score here, as JSON."""
+    """Write routes, schedule, score and what was left out here, as JSON."""
+    schedule: Annotated[Path | None, optional("SCHEDULE.csv")] = None
+    """Write a row for each task that is done here, robot by robot and in order of time: robot, robot_name, task,
+    task_name, x, y, depart, arrive, finish, deadline, slack. Names stay as they are: a spreadsheet may take one that
+    begins with = for a formula."""
     plot: Annotated[Path | None, optional("PLAN.png")] = None
     """Draw routes and schedule here; .png, .svg or .pdf."""
     planning: Annotated[PlanningFlags, arg(name="")] = field(default_factory=PlanningFlags)
@@ -101,14 +107,15 @@ def solve_command(argv: Sequence[str]) -> None:
         MrtaError: if an option cannot be used, or a file cannot be read or written.
     """
     command = parse(Solve, argv, "solve")
-    if command.out:
-        check_destination(command.out)
+    for output in (command.out, command.schedule):
+        if output:
+            check_destination(output)
     if command.plot:
         from mrta_zoo.eval.plot_plan import check_picture_format, save_plan_picture
 
         check_destination(command.plot)
         check_picture_format(command.plot)
-    outputs = {"--out": command.out, "--plot": command.plot}
+    outputs = {"--out": command.out, "--schedule": command.schedule, "--plot": command.plot}
     read = {"the task file": command.taskfile, "the agent file": agent_file(command.taskfile, command.agents)}
     check_distinct(outputs, {**read, **policy_files(command.method)})
     scenario = read_scenario(command.taskfile, command.agents)
@@ -118,6 +125,8 @@ def solve_command(argv: Sequence[str]) -> None:
         solved = solve_and_score(solver, scenario)
     if command.out:
         write_solved(solved, command.out)
+    if command.schedule:
+        write_schedule(scenario, solved.score, command.schedule)
     if command.plot:
         save_plan_picture(scenario, solved.plan, command.plot, solved.score)
     console = results_console()
@@ -128,9 +137,11 @@ def solve_command(argv: Sequence[str]) -> None:
     )
     console.print(schedule_table(scenario, solved.score))
     console.print(totals(solved.score), soft_wrap=True)
+    for line in missed(scenario, solved.plan, solved.score):  # folded between names, as numbers are no use in pieces
+        console.print(line, soft_wrap=not console.is_terminal)
     if known := proven(solved.score, solved.plan.bound):
         console.print(known, soft_wrap=True)
-    for path, what in ((command.out, "plan"), (command.plot, "picture")):
+    for path, what in ((command.out, "plan"), (command.schedule, "schedule"), (command.plot, "picture")):
         if path:
             console.print(f"{what} written to {path}", soft_wrap=True)
 
@@ -159,19 +170,32 @@ def agent_file(task_file: Path, agents: Path | None) -> Path | None:
 
 
 def write_solved(solved: Solved, path: Path) -> None:
-    """Write the plan with its schedule and score as JSON."""
-    score = solved.score
+    """Write the plan with its schedule, its score and what it leaves out as JSON."""
+    scenario, score = solved.scenario, solved.score
+    tasks, robots = scenario.task_names, scenario.robot_names
     write_plan(
         solved.plan,
         path,
         schedule=[
             [
-                ScheduledTask(visit.task, visit.arrival, visit.finish, visit.deadline, visit.completed)
+                ScheduledTask(
+                    visit.task,
+                    visit.arrival,
+                    visit.finish,
+                    visit.deadline,
+                    visit.completed,
+                    tasks[visit.task] if tasks else None,
+                    robots[robot] if robots else None,
+                )
                 for visit in visits
             ]
-            for visits in score.schedule
+            for robot, visits in enumerate(score.schedule)
         ],
         score=PlanScore(score.completed, score.tasks, score.completion, score.cost, score.distance, score.makespan),
+        left_out=[
+            LeftOutTask(each.task, each.reason, tasks[each.task] if tasks else None)
+            for each in left_out(scenario, solved.plan)
+        ],
     )
 
 

@@ -27,6 +27,7 @@ from mrta_zoo.io import read_scenario
 from mrta_zoo.io.strict_json import write_document
 from mrta_zoo.policies.registry import method_names
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.verify import COST
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -187,7 +188,7 @@ def report(found: Comparison, methods: tuple[str, str], rows: int) -> list[str |
 
 def _outcomes(found: Comparison, methods: tuple[str, str]) -> Group:
     return _listed(
-        f"{found.scenario}: {found.tasks} tasks",
+        f"{found.scenario}: {found.tasks} tasks (cost by {COST})",
         ("method", "completed", "cost", "distance", "makespan"),
         [(name, *_figures(outcome)) for name, outcome in zip(methods, found.outcomes, strict=True)],
         2,

@@ -16,6 +16,9 @@ from mrta_zoo.html import table
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
 
+COST = "Eq. 1: the sum of finish / deadline over the tasks missed"
+"""What the cost is, for where it is shown; `Score` says it in full."""
+
 
 @dataclass(frozen=True, slots=True)
 class Visit:
@@ -68,7 +71,7 @@ class Score:
         """What a notebook shows: the scores, and what each robot did."""
         title = (
             f"{self.completed} of {self.tasks} tasks completed ({100 * self.completion:.1f} %), cost {self.cost:.3f}, "
-            f"distance {self.distance:.1f}, makespan {self.makespan:.1f}"
+            f"distance {self.distance:.1f}, makespan {self.makespan:.1f} (cost by {COST})"
         )
         tasks = self.task_names or range(self.tasks)
         robots = self.robot_names or range(len(self.schedule))

@@ -15,20 +15,21 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 
-def write_records(rows: Sequence[DataclassInstance], path: StrPath) -> None:
+def write_records(rows: Sequence[DataclassInstance], path: StrPath, of: type[DataclassInstance] | None = None) -> None:
     """Write rows of one class as CSV with a header, numbers in full precision; the whole file or nothing.
 
     Args:
-        rows: at least one, as their class gives the header.
+        rows: at least one, unless their class is given.
         path: the file.
+        of: their class, which gives the header; by default that of the first.
 
     Raises:
         ConfigError: if there is no row or the file cannot be written.
     """
-    if not rows:
+    if not rows and of is None:
         raise ConfigError(f"{path} cannot be written: there are no rows; expected at least one")
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(field.name for field in fields(rows[0]))
+    writer.writerow(field.name for field in fields(of or rows[0]))
     writer.writerows(astuple(row) for row in rows)
     write_text(stream.getvalue(), path, ConfigError)

@@ -49,7 +49,7 @@ def test_a_plan_and_its_score():
     assert "Plan of a &lt; b by mine: 2 tasks taken" in shown(plan)
     assert cells(shown(plan)) == [["0", "2", "0 → 1"], ["1", "0", "-"]]
     html = shown(verify(SCENARIO, plan))  # 10 + 6 / 2 = 13, then sqrt(500) = 22.36 more
-    assert "2 of 2 tasks completed (100.0 %), cost 0.000, distance 32.4, makespan 35.4" in html
+    assert "2 of 2 tasks completed (100.0 %), cost 0.000, distance 32.4, makespan 35.4 (cost by Eq. 1: the sum" in html
     assert cells(html) == [["0", "2 of 2", "35.4", "0 → 1"], ["1", "0 of 0", "-", "-"]]
 
 
