@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -24,6 +25,7 @@ from mrta_zoo.io import Case, LeftOutTask, PlanScore, ScheduledTask, read_cases,
 from mrta_zoo.io.records import write_records
 from mrta_zoo.io.taptc import find_agent_file
 from mrta_zoo.left_out import left_out
+from mrta_zoo.policies.default_method import BEST_FIRST, default_method
 from mrta_zoo.policies.options import Decode
 from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.protocol import Solver
@@ -32,6 +34,8 @@ from mrta_zoo.rules import MaskRule
 from mrta_zoo.suite import builtin_suite
 
 BUILTIN = "builtin"
+LEARNED = "capam-plus"
+"""What plans if no method is named, but how learned ones should."""
 
 TRAINED_HELP = (
     f"a policy's .safetensors file, or the folder of a training run. NAME{POLISH} has a method's plan improved by "
@@ -45,8 +49,8 @@ METHOD_HELP = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlanningFlags:
-    """How methods plan. Each method uses what it can: heuristics only the mask rule (and random the seed), exact only
-    the budget, pyvrp the budget and the seed, big-mrta nothing."""
+    """How methods plan. Each method uses what it can: heuristics only the mask rule (and random the seed), ils and
+    exact only the budget, eils and pyvrp the budget and the seed, big-mrta nothing."""
 
     decode: Annotated[Decode | None, optional("{greedy,sample,augment,beam}")] = None
     """How learned methods choose: greedy takes the likeliest task each time; sample takes the best of several drawn
@@ -64,7 +68,7 @@ class PlanningFlags:
     mask_rule: Annotated[MaskRule | None, optional("{feasible,active,unvisited}")] = None
     """What a robot may choose: feasible, what it can finish by the deadline; active, whose deadline has not passed;
     unvisited, anything not yet taken. By default feasible or, for a trained policy, what it was trained under.
-    big-mrta, exact and pyvrp only plan what is finished by its deadline."""
+    Methods that are neither heuristics nor trained only plan what is finished by its deadline."""
     threads: int = 1
     """CPU threads for learned methods: one is as fast as several for single missions, and timings compare. For eils
     and +polish with --budget, as many searches at a time, of which the best counts."""
@@ -88,7 +92,15 @@ class Solve:
     """The mission: a TAPTC task file, or a scenario in .json or .csv."""
     agents: Annotated[Path | None, optional("AGENTFILE")] = None
     """The robots: a TAPTC agent file, or .csv. Without it they are in TASKFILE or, for TAPTC, in agent/ beside it."""
-    method: Annotated[str, arg(metavar="METHOD", help=METHOD_HELP)] = "capam-plus"
+    method: Annotated[
+        str | None,
+        arg(
+            metavar="METHOD",
+            help_behavior_hint="",
+            help=f"By default {BEST_FIRST[0]} or, where what it needs is not installed, the first of "
+            f"{', '.join(BEST_FIRST[1:])} that is; with --decode, --samples or --mask-rule {LEARNED}. {METHOD_HELP}",
+        ),
+    ] = None
     out: Annotated[Path | None, optional("PLAN.json")] = None
     """Write routes, schedule, score and what was left out here, as JSON."""
     schedule: Annotated[Path | None, optional("SCHEDULE.csv")] = None
@@ -117,10 +129,11 @@ def solve_command(argv: Sequence[str]) -> None:
         check_picture_format(command.plot)
     outputs = {"--out": command.out, "--schedule": command.schedule, "--plot": command.plot}
     read = {"the task file": command.taskfile, "the agent file": agent_file(command.taskfile, command.agents)}
-    check_distinct(outputs, {**read, **policy_files(command.method)})
+    method = command.method or chosen_method(command.planning)
+    check_distinct(outputs, {**read, **policy_files(method)})
     scenario = read_scenario(command.taskfile, command.agents)
     with preparing():
-        solver = command.planning.solver(command.method)
+        solver = command.planning.solver(method)
     with cpu_threads(command.planning.threads):
         solved = solve_and_score(solver, scenario)
     if command.out:
@@ -131,7 +144,7 @@ def solve_command(argv: Sequence[str]) -> None:
         save_plan_picture(scenario, solved.plan, command.plot, solved.score)
     console = results_console()
     console.print(
-        f"{scenario.name}: {scenario.num_tasks} tasks, {scenario.num_robots} robots, planned by {command.method} "
+        f"{scenario.name}: {scenario.num_tasks} tasks, {scenario.num_robots} robots, planned by {method} "
         f"in {solved.seconds:.3f} s",
         soft_wrap=True,
     )
@@ -144,6 +157,16 @@ def solve_command(argv: Sequence[str]) -> None:
     for path, what in ((command.out, "plan"), (command.schedule, "schedule"), (command.plot, "picture")):
         if path:
             console.print(f"{what} written to {path}", soft_wrap=True)
+
+
+def chosen_method(planning: PlanningFlags) -> str:
+    """The method that plans if none is named; says on standard error if it is not the best, and why."""
+    if any(option is not None for option in (planning.decode, planning.samples, planning.mask_rule)):
+        return LEARNED  # the default would make nothing of them
+    method, missing = default_method()
+    if missing:
+        print(f"note: planning by {method} instead of the default: {missing}", file=sys.stderr)
+    return method
 
 
 def policy_files(method: str) -> dict[str, Path]:

@@ -12,6 +12,7 @@ import pytest
 from command_line import Captured, fails
 from factories import hopeless_scenario, named_scenario
 
+from mrta_zoo import extras
 from mrta_zoo.cli import main
 from mrta_zoo.io import json_format, read_plan, write_plan, write_scenario
 from mrta_zoo.plan import Plan
@@ -119,3 +120,37 @@ def test_a_schedule_takes_no_other_file(other: str, mission: Path, tmp_path: Pat
     assert "which is the task file" in fails(capsys, [*arguments, "--schedule", str(mission)])
     assert "does not exist" in fails(capsys, [*arguments, "--schedule", str(tmp_path / "absent" / "s.csv")])
     assert mission.read_text().startswith("kind,")
+
+
+def test_the_best_method_plans_by_default(mission: Path, tmp_path: Path, capsys: Captured) -> None:
+    pytest.importorskip("numba")
+    out = tmp_path / "plan.json"
+    assert main(["solve", str(mission), "--out", str(out)]) == 0
+    output = capsys.readouterr()
+    assert output.out.startswith("named: 5 tasks, 2 robots, planned by eils in ")
+    assert "completed 3 of 5 tasks" in output.out  # all that can be done
+    assert (read_plan(out).method, output.err) == ("eils", "")
+
+
+def test_without_what_it_needs_the_next_best_plans(
+    mission: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    monkeypatch.setattr(extras, "find_spec", lambda name: None)
+    assert main(["solve", str(mission)]) == 0
+    output = capsys.readouterr()
+    assert output.out.startswith("named: 5 tasks, 2 robots, planned by nearest in ")
+    assert output.err == (
+        "note: planning by nearest instead of the default: method 'eils' needs scipy, numba, not installed here; "
+        'install it with: pip install "mrta_zoo[solvers]"\n'
+    )
+    # One that is named is not exchanged for another.
+    assert "method 'eils' needs scipy, numba, not installed" in fails(
+        capsys, ["solve", str(mission), "--method", "eils"]
+    )
+
+
+@pytest.mark.parametrize("flags", [["--decode", "greedy"], ["--samples", "4"], ["--mask-rule", "unvisited"]])
+def test_how_learned_methods_plan_is_for_one_of_them(flags: list[str], mission: Path, capsys: Captured) -> None:
+    pytest.importorskip("torch")
+    assert main(["solve", str(mission), *flags]) == 0
+    assert "planned by capam-plus in " in capsys.readouterr().out
