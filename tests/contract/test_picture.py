@@ -209,3 +209,15 @@ def test_as_much_of_a_name_as_there_is_room_for():
     assert text_width(short, 17) <= 100
     assert fitted("弁", "3", 17, 100) == "3"  # which the font lacks
     assert fitted("valve-A", "3", 17, 0) == "…"
+
+
+@pytest.mark.parametrize("corner", [(-300.0, -60.0), (512_000.0, 5_403_000.0)])
+def test_a_map_may_lie_anywhere(mission, corner):
+    here, shift = mission.scenario, np.array(corner)
+    moved = Mission(replace(here, task_xy=here.task_xy + shift, robot_xy=here.robot_xy + shift, map_origin=corner))
+    moved.assign(0)
+    moved.assign(1)
+    one, other = (as_array(draw(each))[80:660, 80:660] for each in (mission, moved))
+    assert (one != other).mean() < 0.01  # the grid's numbers are others
+    picture = as_array(draw(moved))
+    assert pixel(picture, 50 - 6 / PIXELS, 80) == rgb(robot_colour(1))
