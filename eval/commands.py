@@ -16,15 +16,14 @@ from mrta_zoo.eval.console import preparing, progress_bar, results_console
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.rows import Row
-from mrta_zoo.eval.runner import Solved, evaluate, solve_and_score
+from mrta_zoo.eval.runner import evaluate, solve_and_score
 from mrta_zoo.eval.schedule import missed, proven, schedule_table, totals
-from mrta_zoo.eval.schedule_file import write_schedule
+from mrta_zoo.eval.solved_files import write_schedule, write_solved
 from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.eval.threads import cpu_threads
-from mrta_zoo.io import Case, LeftOutTask, PlanScore, ScheduledTask, read_cases, read_scenario, write_plan
+from mrta_zoo.io import Case, read_cases, read_scenario
 from mrta_zoo.io.records import write_records
 from mrta_zoo.io.taptc import find_agent_file
-from mrta_zoo.left_out import left_out
 from mrta_zoo.policies.default_method import BEST_FIRST, default_method
 from mrta_zoo.policies.options import Decode
 from mrta_zoo.policies.pretrained import pretrained_names
@@ -139,7 +138,7 @@ def solve_command(argv: Sequence[str]) -> None:
     if command.out:
         write_solved(solved, command.out)
     if command.schedule:
-        write_schedule(scenario, solved.score, command.schedule)
+        write_schedule(solved, command.schedule)
     if command.plot:
         save_plan_picture(scenario, solved.plan, command.plot, solved.score)
     console = results_console()
@@ -190,36 +189,6 @@ def agent_file(task_file: Path, agents: Path | None) -> Path | None:
         return find_agent_file(task_file)
     except ScenarioError:  # the reader has more to say: maybe there is no task file either
         return None
-
-
-def write_solved(solved: Solved, path: Path) -> None:
-    """Write the plan with its schedule, its score and what it leaves out as JSON."""
-    scenario, score = solved.scenario, solved.score
-    tasks, robots = scenario.task_names, scenario.robot_names
-    write_plan(
-        solved.plan,
-        path,
-        schedule=[
-            [
-                ScheduledTask(
-                    visit.task,
-                    visit.arrival,
-                    visit.finish,
-                    visit.deadline,
-                    visit.completed,
-                    tasks[visit.task] if tasks else None,
-                    robots[robot] if robots else None,
-                )
-                for visit in visits
-            ]
-            for robot, visits in enumerate(score.schedule)
-        ],
-        score=PlanScore(score.completed, score.tasks, score.completion, score.cost, score.distance, score.makespan),
-        left_out=[
-            LeftOutTask(each.task, each.reason, tasks[each.task] if tasks else None)
-            for each in left_out(scenario, solved.plan)
-        ],
-    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

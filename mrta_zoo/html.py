@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
+from unicodedata import bidirectional
 
 from mrta_zoo.palette import FAINT, GROUND, URGENCY, blend, robot_colour
 
@@ -32,6 +33,12 @@ def table(title: str, header: Sequence[str], rows: Iterable[Sequence[object]]) -
     if len(every) > MOST_ROWS:
         lines.append(f"<div>and {len(every) - MOST_ROWS} more</div>")
     return "".join(lines)
+
+
+def in_order(names: Iterable[object]) -> str:
+    """Names as plain text from left to right, also where some are written from right to left."""
+    texts = map(str, names)
+    return " → ".join(f"\u2068{text}\u2069" if any(map(_from_right, text)) else text for text in texts)
 
 
 def map_of(
@@ -74,6 +81,10 @@ def map_of(
         )
     lines.append("</svg>")
     return "".join(lines)
+
+
+def _from_right(character: str) -> bool:
+    return bidirectional(character) in ("R", "AL")
 
 
 def _text(value: object) -> str:

@@ -18,7 +18,8 @@ FloatArray = npt.NDArray[np.float64]
 
 SMALLEST, LARGEST = 1e-12, 1e12
 """What a positive quantity may be: times and distances made of such numbers neither overflow nor vanish."""
-_UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")
+# Besides what steers terminals, what turns round all that follows, in browsers, too.
+_UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 BOUNDS = f", from {SMALLEST:g} to {LARGEST:g}"
 
 

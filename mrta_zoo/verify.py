@@ -12,7 +12,7 @@ import operator
 from dataclasses import dataclass
 
 from mrta_zoo.errors import PlanError
-from mrta_zoo.html import table
+from mrta_zoo.html import in_order, table
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
 
@@ -77,7 +77,7 @@ class Score:
         robots = self.robot_names or range(len(self.schedule))
         rows = [
             (robot, f"{sum(visit.completed for visit in visits)} of {len(visits)}",
-             visits[-1].finish if visits else "-", " → ".join(str(tasks[visit.task]) for visit in visits) or "-")
+             visits[-1].finish if visits else "-", in_order(tasks[visit.task] for visit in visits) or "-")
             for robot, visits in zip(robots, self.schedule, strict=True)
         ]  # fmt: skip
         return table(title, ("robot", "completed", "last finish", "tasks"), rows)

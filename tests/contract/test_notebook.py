@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import re
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -98,6 +99,12 @@ def test_names_are_text():
         ["Ann", "2 of 2", "45.0", "valve-A → pump #3 &lt;b&gt;"],
         ["Bob &amp; Co", "1 of 1", "17.0", "=SUM(A1)"],
     ]
+
+
+def test_names_from_right_to_left_keep_the_order():
+    named = replace(named_scenario(), task_names=("שער", "ברז", "c", "d", "e"))
+    html = shown(verify(named, Plan.of([(0, 1), (2,)])))
+    assert cells(html)[0][-1] == "\u2068שער\u2069 → \u2068ברז\u2069"  # isolated: or the arrow would point backwards
 
 
 def test_a_map_may_lie_anywhere():

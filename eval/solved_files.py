@@ -1,13 +1,46 @@
-"""A plan's schedule as a flat table, one row for each task that is done: for spreadsheets and dispatchers."""
+"""What a solved mission is written to: the plan as JSON, and its schedule as a flat table for spreadsheets."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
 
+from mrta_zoo.eval.runner import Solved
+from mrta_zoo.io import LeftOutTask, PlanScore, ScheduledTask, write_plan
 from mrta_zoo.io.records import write_records
+from mrta_zoo.left_out import left_out
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import Score
+
+
+def write_solved(solved: Solved, path: Path) -> None:
+    """Write the plan with its schedule, its score and what it leaves out as JSON."""
+    scenario, score = solved.scenario, solved.score
+    tasks, robots = scenario.task_names, scenario.robot_names
+    write_plan(
+        solved.plan,
+        path,
+        schedule=[
+            [
+                ScheduledTask(
+                    visit.task,
+                    visit.arrival,
+                    visit.finish,
+                    visit.deadline,
+                    visit.completed,
+                    tasks[visit.task] if tasks else None,
+                    robots[robot] if robots else None,
+                )
+                for visit in visits
+            ]
+            for robot, visits in enumerate(score.schedule)
+        ],
+        score=PlanScore(score.completed, score.tasks, score.completion, score.cost, score.distance, score.makespan),
+        left_out=[
+            LeftOutTask(each.task, each.reason, tasks[each.task] if tasks else None)
+            for each in left_out(scenario, solved.plan)
+        ],
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,10 +100,10 @@ def schedule_rows(scenario: Scenario, score: Score) -> list[ScheduleRow]:
     return rows
 
 
-def write_schedule(scenario: Scenario, score: Score, path: Path) -> None:
-    """Write the rows as CSV, numbers in full precision and names as they are, the header in any case.
+def write_schedule(solved: Solved, path: Path) -> None:
+    """Write the schedule as CSV, numbers in full precision and names as they are, the header in any case.
 
     Raises:
         ConfigError: if the file cannot be written.
     """
-    write_records(schedule_rows(scenario, score), path, ScheduleRow)
+    write_records(schedule_rows(solved.scenario, solved.score), path, ScheduleRow)
