@@ -48,7 +48,7 @@ class Session:
         Raises:
             MrtaError: if it cannot be done; nothing is changed then.
         """
-        command, argument = self._understood(line.strip() or "follow")
+        command, argument = self._understood(line.strip())
         before = self.stepper.position
         said = command.run(self, argument)
         if self.stepper.position != before or command.name == "load":
@@ -61,6 +61,8 @@ class Session:
 
     def _understood(self, line: str) -> tuple[Command, str]:
         """The command, and what follows it."""
+        if not line:
+            return _BY_NAME["follow"], ""
         names = self.stepper.scenario.task_names
         name, argument = [*line.split(maxsplit=1), ""][:2]
         command = _BY_NAME.get(name.lower())

@@ -51,7 +51,7 @@ def test_names_that_are_numbers_are_names() -> None:
 
 
 def test_a_name_that_is_a_command() -> None:
-    steps = session("b", "Back", "end", "e", "stay")
+    steps = session("b", "Back", "end", "e", "follow")
     for line, expected in (
         ("b", "'b' is a task and a command; expected take b for the task, or back for the command"),
         ("Back", "expected take Back for the task, or back for the command"),
@@ -61,6 +61,7 @@ def test_a_name_that_is_a_command() -> None:
             steps.do(line)
     assert steps.do("take b").startswith("decision 0: Ann takes task b, until 15.0")
     assert steps.do("back") == "decision 0: Ann chooses at 0.0"
+    assert steps.do("") == "decision 0: Ann takes task b, until 15.0"  # Enter is no name
 
 
 def test_robots_by_name() -> None:
