@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -15,15 +16,17 @@ from mrta_zoo.eval.console import preparing, progress_bar, results_console, warn
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.rows import Row
-from mrta_zoo.eval.runner import Solved, evaluate, solve_and_score
-from mrta_zoo.eval.schedule import proven, schedule_table, totals
+from mrta_zoo.eval.runner import evaluate, solve_and_score
+from mrta_zoo.eval.schedule import missed, proven, schedule_table, totals
+from mrta_zoo.eval.solved_files import write_schedule, write_solved
 from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.eval.threads import cpu_threads
-from mrta_zoo.io import Case, PlanScore, ScheduledTask, read_cases, read_scenario, write_plan
+from mrta_zoo.io import Case, read_cases, read_scenario
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.records import records_text, write_records
 from mrta_zoo.io.taptc import find_agent_file
 from mrta_zoo.paths import suffix_of
+from mrta_zoo.policies.default_method import BEST_FIRST, default_method
 from mrta_zoo.policies.options import Decode
 from mrta_zoo.policies.policy_files import info_file, weights_file
 from mrta_zoo.policies.pretrained import pretrained_names
@@ -33,6 +36,8 @@ from mrta_zoo.rules import MaskRule
 from mrta_zoo.suite import builtin_suite
 
 BUILTIN = "builtin"
+LEARNED = "capam-plus"
+"""What plans if no method is named, but how learned ones should."""
 
 TRAINED_HELP = (
     f"a policy's .safetensors file, or the folder of a training run. NAME{POLISH} has a method's plan improved by "
@@ -46,8 +51,8 @@ METHOD_HELP = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlanningFlags:
-    """How methods plan. Each method uses what it can: heuristics only the mask rule (and random the seed), exact only
-    the budget, pyvrp the budget and the seed, big-mrta nothing."""
+    """How methods plan. Each method uses what it can: heuristics only the mask rule (and random the seed), ils and
+    exact only the budget, eils and pyvrp the budget and the seed, big-mrta nothing."""
 
     decode: Annotated[Decode | None, optional("{greedy,sample,augment,beam}")] = None
     """How learned methods choose: greedy takes the likeliest task each time; sample takes the best of several drawn
@@ -65,7 +70,7 @@ class PlanningFlags:
     mask_rule: Annotated[MaskRule | None, optional("{feasible,active,unvisited}")] = None
     """What a robot may choose: feasible, what it can finish by the deadline; active, whose deadline has not passed;
     unvisited, anything not yet taken. By default feasible or, for a trained policy, what it was trained under.
-    big-mrta, exact and pyvrp only plan what is finished by its deadline."""
+    Methods that are neither heuristics nor trained only plan what is finished by its deadline."""
     threads: int = 1
     """CPU threads for learned methods: one is as fast as several for single missions, and timings compare. For eils
     and +polish with --budget, as many searches at a time, of which the best counts."""
@@ -89,9 +94,21 @@ class Solve:
     """The mission: a TAPTC task file, or a scenario in .json or .csv."""
     agents: Annotated[Path | None, optional("AGENTFILE")] = None
     """The robots: a TAPTC agent file, or .csv. Without it they are in TASKFILE or, for TAPTC, in agent/ beside it."""
-    method: Annotated[str, arg(metavar="METHOD", help=METHOD_HELP)] = "capam-plus"
+    method: Annotated[
+        str | None,
+        arg(
+            metavar="METHOD",
+            help_behavior_hint="",
+            help=f"By default {BEST_FIRST[0]} or, where what it needs is not installed, the first of "
+            f"{', '.join(BEST_FIRST[1:])} that is; with --decode, --samples or --mask-rule {LEARNED}. {METHOD_HELP}",
+        ),
+    ] = None
     out: Annotated[Path | None, optional("PLAN.json")] = None
-    """Write routes, schedule and score here, as JSON."""
+    """Write routes, schedule, score and what was left out here, as JSON."""
+    schedule: Annotated[Path | None, optional("SCHEDULE.csv")] = None
+    """Write a row for each task that is done here, robot by robot and in order of time: robot, robot_name, task,
+    task_name, x, y, depart, arrive, finish, deadline, slack. Names stay as they are: a spreadsheet may take one that
+    begins with = for a formula."""
     plot: Annotated[Path | None, optional("PLAN.png")] = None
     """Draw routes and schedule here; .png, .svg or .pdf."""
     planning: Annotated[PlanningFlags, arg(name="")] = field(default_factory=PlanningFlags)
@@ -104,39 +121,56 @@ def solve_command(argv: Sequence[str]) -> None:
         MrtaError: if an option cannot be used, or a file cannot be read or written.
     """
     command = parse(Solve, argv, "solve")
-    if command.out:
-        check_destination(command.out)
+    for output in (command.out, command.schedule):
+        if output:
+            check_destination(output)
     if command.plot:
         from mrta_zoo.eval.plot_plan import check_picture_format, save_plan_picture
 
         check_destination(command.plot)
         check_picture_format(command.plot)
+    destinations = {"--out": command.out, "--schedule": command.schedule, "--plot": command.plot}
     read = {"the task file": command.taskfile, "the agent file": agent_file(command.taskfile, command.agents)}
-    check_distinct({"--out": command.out, "--plot": command.plot}, {**read, **policy_files(command.method)})
+    method = command.method or chosen_method(command.planning)
+    check_distinct(destinations, {**read, **policy_files(method)})
     scenario = read_scenario(command.taskfile, command.agents)
     with preparing():
-        solver = command.planning.solver(command.method)
+        solver = command.planning.solver(method)
     with cpu_threads(command.planning.threads):
         solved = solve_and_score(solver, scenario)
     with Outputs() as outputs:
         if command.out:
             outputs.write("plan", command.out, lambda path: write_solved(solved, path))
+        if command.schedule:
+            outputs.write("schedule", command.schedule, lambda path: write_schedule(solved, path))
         if command.plot:
             outputs.write(
                 "picture", command.plot, lambda path: save_plan_picture(scenario, solved.plan, path, solved.score)
             )
         console = results_console()
         console.print(
-            f"{scenario.name}: {scenario.num_tasks} tasks, {scenario.num_robots} robots, planned by {command.method} "
+            f"{scenario.name}: {scenario.num_tasks} tasks, {scenario.num_robots} robots, planned by {method} "
             f"in {solved.seconds:.3f} s",
             soft_wrap=True,
         )
         console.print(schedule_table(scenario, solved.score))
         console.print(totals(solved.score), soft_wrap=True)
+        for line in missed(scenario, solved.plan, solved.score):  # folded between names: pieces of numbers are no use
+            console.print(line, soft_wrap=not console.is_terminal)
         if known := proven(solved.score, solved.plan.bound):
             console.print(known, soft_wrap=True)
         for line in outputs.written:
             console.print(line, soft_wrap=True)
+
+
+def chosen_method(planning: PlanningFlags) -> str:
+    """The method that plans if none is named; says on standard error if it is not the best, and why."""
+    if any(option is not None for option in (planning.decode, planning.samples, planning.mask_rule)):
+        return LEARNED  # the default would make nothing of them
+    method, missing = default_method()
+    if missing:
+        print(f"note: planning by {method} instead of the default: {missing}", file=sys.stderr)
+    return method
 
 
 def policy_files(method: str) -> dict[str, Path]:
@@ -158,23 +192,6 @@ def agent_file(task_file: Path, agents: Path | None) -> Path | None:
         return find_agent_file(task_file)
     except ScenarioError:  # the reader has more to say: maybe there is no task file either
         return None
-
-
-def write_solved(solved: Solved, path: Path) -> None:
-    """Write the plan with its schedule and score as JSON."""
-    score = solved.score
-    write_plan(
-        solved.plan,
-        path,
-        schedule=[
-            [
-                ScheduledTask(visit.task, visit.arrival, visit.finish, visit.deadline, visit.completed)
-                for visit in visits
-            ]
-            for visits in score.schedule
-        ],
-        score=PlanScore(score.completed, score.tasks, score.completion, score.cost, score.distance, score.makespan),
-    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

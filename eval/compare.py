@@ -14,7 +14,8 @@ from rich.text import Text
 from tyro.conf import Positional, arg
 
 from mrta_zoo.debug.advisors import Advisor, make_advisor
-from mrta_zoo.debug.comparison import Alternative, Comparison, Outcome, Parting, compare
+from mrta_zoo.debug.called import called
+from mrta_zoo.debug.comparison import Alternative, Comparison, Fate, Outcome, Parting, compare
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.commands import TRAINED_HELP, PlanningFlags, agent_file, policy_files
 from mrta_zoo.eval.console import preparing, results_console
@@ -28,6 +29,7 @@ from mrta_zoo.io.strict_json import write_document
 from mrta_zoo.paths import suffix_of
 from mrta_zoo.policies.registry import method_names
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.verify import COST
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,6 +117,9 @@ def write_comparison(found: Comparison, methods: Sequence[str], path: Path) -> N
     body: dict[str, Any] = asdict(found)
     del body["traces"]
     document = {"format": "mrta_zoo.comparison", "version": 1, **body, "methods": list(methods)}
+    scenario = found.traces[0].scenario
+    names = {"task_names": list(scenario.task_names), "robot_names": list(scenario.robot_names)}
+    document |= {field: each for field, each in names.items() if each}
     for name in ("disagreements", "turns", "fates"):
         document[name] = list(document[name])
     write_document(document, path, ConfigError)
@@ -123,17 +128,25 @@ def write_comparison(found: Comparison, methods: Sequence[str], path: Path) -> N
 def report(found: Comparison, methods: tuple[str, str], rows: int) -> list[str | Group]:
     """What there is to say, as lines and tables with at most so many rows."""
     first, second = methods
+    scenario = found.traces[0].scenario
+    robots, tasks = scenario.robot_names, scenario.task_names
     parts: list[str | Group] = [_outcomes(found, methods)]
     if found.parting is None:
         return [*parts, f"{first} and {second} do the same throughout"]
-    parts += [_parted(found.parting, methods), *_costs(found, found.parting, methods)]
+    parts += [_parted(found.parting, methods, scenario), *_costs(found, found.parting, methods)]
     parts.append(
         _listed(
             f"In the place of {first}, {second} would choose otherwise at {len(found.disagreements)} of "
             f"{len(found.traces[0].choices)} decisions",
             ("decision", "time", "robot", f"{first}", f"{second}"),
             [
-                (each.index, each.time, each.robot, _task(each.chosen), _task(each.advised))
+                (
+                    each.index,
+                    each.time,
+                    called(each.robot, robots),
+                    _task(each.chosen, scenario),
+                    _task(each.advised, scenario),
+                )
                 for each in found.disagreements
             ],
             rows,
@@ -144,7 +157,14 @@ def report(found: Comparison, methods: tuple[str, str], rows: int) -> list[str |
             f"Turns in which a robot takes different tasks: {len(found.turns)}",
             ("robot", "turn", first, "until", second, "until"),
             [
-                (each.robot, each.turn, each.tasks[0], each.finish[0], each.tasks[1], each.finish[1])
+                (
+                    called(each.robot, robots),
+                    each.turn,
+                    _named(each.tasks[0], tasks),
+                    each.finish[0],
+                    _named(each.tasks[1], tasks),
+                    each.finish[1],
+                )
                 for each in found.turns
             ],
             rows,
@@ -158,9 +178,8 @@ def report(found: Comparison, methods: tuple[str, str], rows: int) -> list[str |
                 ("task", "deadline", "robot", "finish", f"by {methods[1 - index]}"),
                 [
                     (
-                        each.task, each.deadline, each.robots[index], each.finish[index],
-                        "not taken" if (late := each.finish[1 - index]) is None
-                        else f"late, by robot {each.robots[1 - index]} at {late:.1f}",
+                        called(each.task, tasks), each.deadline, _named(each.robots[index], robots),
+                        each.finish[index], _fate(each, 1 - index, scenario),
                     )
                     for each in fates
                 ],
@@ -172,7 +191,7 @@ def report(found: Comparison, methods: tuple[str, str], rows: int) -> list[str |
 
 def _outcomes(found: Comparison, methods: tuple[str, str]) -> Group:
     return _listed(
-        f"{found.scenario}: {found.tasks} tasks",
+        f"{found.scenario}: {found.tasks} tasks (cost by {COST})",
         ("method", "completed", "cost", "distance", "makespan"),
         [(name, *_figures(outcome)) for name, outcome in zip(methods, found.outcomes, strict=True)],
         2,
@@ -183,13 +202,20 @@ def _figures(outcome: Outcome) -> tuple[object, ...]:
     return outcome.completed, f"{outcome.cost:.3f}", outcome.distance, outcome.makespan
 
 
-def _parted(parting: Parting, methods: tuple[str, str]) -> Group:
+def _fate(fate: Fate, index: int, scenario: Scenario) -> str:
+    """What one of the two makes of a task that it doesn't complete."""
+    robot, late = fate.robots[index], fate.finish[index]
+    return "not taken" if robot is None or late is None else f"late, by {scenario.robot_name(robot)} at {late:.1f}"
+
+
+def _parted(parting: Parting, methods: tuple[str, str], scenario: Scenario) -> Group:
     def row(method: str, choice: Alternative) -> tuple[object, ...]:
         likely = [None if each is None else f"{100 * each:.1f}" for each in choice.probabilities]
-        return method, _task(choice.task), choice.distance, choice.finish, choice.slack, *likely
+        return method, _task(choice.task, scenario), choice.distance, choice.finish, choice.slack, *likely
 
     return _listed(
-        f"They part at decision {parting.index}, at {parting.time:.1f}, when robot {parting.robot} chooses",
+        f"They part at decision {parting.index}, at {parting.time:.1f}, when {scenario.robot_name(parting.robot)} "
+        "chooses",
         ("method", "task", "distance", "finish", "slack", f"% {methods[0]}", f"% {methods[1]}"),
         [row(method, choice) for method, choice in zip(methods, parting.choices, strict=True)],
         2,
@@ -200,9 +226,9 @@ def _costs(found: Comparison, parting: Parting, methods: tuple[str, str]) -> lis
     """What each method makes of the other's choice, a line each."""
     lines = []
     for index, method in enumerate(methods):
-        task = _task(parting.choices[1 - index].task)
+        task = parting.choices[1 - index].task
         instead, outcome = parting.otherwise[index], found.outcomes[index]
-        choice = "staying there" if task == "stays" else f"task {task} there"
+        choice = "staying there" if task is None else f"task {found.traces[0].scenario.task_name(task)} there"
         if instead is None:
             lines.append(f"{method} may not have {choice}, by its mask rule")
             continue
@@ -229,5 +255,9 @@ def _cell(value: object) -> str:
     return "-" if value is None else f"{value:.1f}" if isinstance(value, float) else str(value)
 
 
-def _task(task: int | None) -> str:
-    return "stays" if task is None else str(task)
+def _task(task: int | None, scenario: Scenario) -> str:
+    return "stays" if task is None else scenario.task_name(task)
+
+
+def _named(index: int | None, names: Sequence[str]) -> str | None:
+    return None if index is None else called(index, names)

@@ -12,11 +12,12 @@ from rich.table import Table
 
 from mrta_zoo import mrta_v0
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.commands import builtin_cases, run_with_progress, write_solved
+from mrta_zoo.eval.commands import builtin_cases, run_with_progress
 from mrta_zoo.eval.console import results_console
 from mrta_zoo.eval.plot_plan import save_plan_picture
 from mrta_zoo.eval.runner import solve_and_score
 from mrta_zoo.eval.schedule import totals
+from mrta_zoo.eval.solved_files import write_solved
 from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.extras import require

@@ -17,8 +17,9 @@ from mrta_zoo.verify import Score, verify
 
 @dataclass(frozen=True, slots=True)
 class Solved:
-    """A plan with its score and the wall-clock seconds it took."""
+    """A mission with its plan, the plan's score and the wall-clock seconds it took."""
 
+    scenario: Scenario
     plan: Plan
     score: Score
     seconds: float
@@ -33,7 +34,7 @@ def solve_and_score(solver: Solver, scenario: Scenario) -> Solved:
     begun = time.perf_counter()
     plan = solver.solve(scenario)
     seconds = time.perf_counter() - begun
-    return Solved(plan, verify(scenario, plan), seconds)
+    return Solved(scenario, plan, verify(scenario, plan), seconds)
 
 
 def evaluate(cases: Sequence[Case], solvers: Mapping[str, Solver]) -> Iterator[Row]:

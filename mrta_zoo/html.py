@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from html import escape
+from unicodedata import bidirectional
 
 from mrta_zoo.palette import FAINT, GROUND, URGENCY, blend, robot_colour
 
@@ -34,19 +35,29 @@ def table(title: str, header: Sequence[str], rows: Iterable[Sequence[object]]) -
     return "".join(lines)
 
 
+def in_order(names: Iterable[object]) -> str:
+    """Names as plain text from left to right, also where some are written from right to left."""
+    texts = map(str, names)
+    return " → ".join(f"\u2068{text}\u2069" if any(map(_from_right, text)) else text for text in texts)
+
+
 def map_of(
     map_size: tuple[float, float],
     tasks: Sequence[tuple[float, float]],
     deadlines: Sequence[float],
     robots: Sequence[tuple[float, float]],
+    task_names: Sequence[str],
+    robot_names: Sequence[str],
 ) -> str:
     """A map as SVG: tasks, the redder the earlier their deadline, and the squares where robots start.
 
     Args:
         map_size: width and height in distance units, > 0.
-        tasks: their places.
+        tasks: their places, from the map's lowest x and y.
         deadlines: one for each task, > 0.
-        robots: their places.
+        robots: their places, likewise.
+        task_names: what to call each task, as plain text.
+        robot_names: what to call each robot, likewise.
     """
     scale = _SIDE / max(map_size)
     width, height = (scale * side for side in map_size)
@@ -61,15 +72,19 @@ def map_of(
         lines.append(
             f'<circle cx="{scale * x:.1f}" cy="{height - scale * y:.1f}" r="{radius:.1f}" '
             f'fill="{blend(URGENCY, deadline / horizon)}" stroke="{FAINT}" stroke-width="0.7">'
-            f"<title>task {task}, deadline {deadline:g}</title></circle>"
+            f"<title>{escape(task_names[task])}, deadline {deadline:g}</title></circle>"
         )
     for robot, (x, y) in enumerate(robots):
         lines.append(
             f'<rect x="{scale * x - 4:.1f}" y="{height - scale * y - 4:.1f}" width="8" height="8" '
-            f'fill="{robot_colour(robot)}" stroke="#ffffff"><title>robot {robot}</title></rect>'
+            f'fill="{robot_colour(robot)}" stroke="#ffffff"><title>{escape(robot_names[robot])}</title></rect>'
         )
     lines.append("</svg>")
     return "".join(lines)
+
+
+def _from_right(character: str) -> bool:
+    return bidirectional(character) in ("R", "AL")
 
 
 def _text(value: object) -> str:

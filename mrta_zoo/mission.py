@@ -223,22 +223,27 @@ class Mission:
     def _check(self, robot: int, task: int) -> None:
         if self.actor < 0:
             raise ActionError(f"task {task} was chosen, but the mission is over: every robot is retired")
+        name, named = self.scenario.robot_label, self.scenario.task_label
         if not 0 <= robot < self.scenario.num_robots:
             raise ActionError(f"there is no robot {robot}; the scenario has {self.scenario.num_robots}")
         if self.retired[robot] or self.ready[robot] != self.time:
-            raise ActionError(f"robot {robot} is not free at time {self.time:g}; robot {self.actor} is to act")
+            raise ActionError(
+                f"robot {name(robot)} is not free at time {self.time:g}; robot {name(self.actor)} is to act"
+            )
         if self.heading[robot] >= 0:
             raise ActionError(
-                f"robot {robot} has just taken task {self.heading[robot]} and cannot take task {task} too; "
-                "advance the mission first"
+                f"robot {name(robot)} has just taken task {named(self.heading[robot])} and cannot take task {task} "
+                "too; advance the mission first"
             )
         if not 0 <= task < self.scenario.num_tasks:
-            raise ActionError(f"robot {robot} chose task {task}; tasks are numbered 0 to {self.scenario.num_tasks - 1}")
+            raise ActionError(
+                f"robot {name(robot)} chose task {task}; tasks are numbered 0 to {self.scenario.num_tasks - 1}"
+            )
         if not (self._untaken[task] and self._allowed[robot, task]):
             reason = MaskReason(int(self.reasons(robot)[task])).name.lower().replace("_", " ")
             choices = np.flatnonzero(self.mask(robot)).tolist()
-            shown = ", ".join(map(str, choices[:10])) + (", …" if len(choices) > 10 else "")
+            shown = ", ".join(map(named, choices[:10])) + (", …" if len(choices) > 10 else "")
             raise ActionError(
-                f"robot {robot} may not choose task {task} at time {self.time:g}: {reason}; "
+                f"robot {name(robot)} may not choose task {named(task)} at time {self.time:g}: {reason}; "
                 f"its choices are {shown or 'none'}"
             )

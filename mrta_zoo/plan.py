@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import index
 
-from mrta_zoo.html import table
+from mrta_zoo.html import in_order, table
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Plan:
         """What a notebook shows: each robot's tasks, in order."""
         of = f" of {self.scenario}" if self.scenario else ""
         by = f" by {self.method}" if self.method else ""
-        rows = [(robot, len(route), " → ".join(map(str, route)) or "-") for robot, route in enumerate(self.routes)]
+        rows = [(robot, len(route), in_order(route) or "-") for robot, route in enumerate(self.routes)]
         return table(
             f"Plan{of}{by}: {sum(map(len, self.routes))} tasks taken", ("robot", "tasks", "in this order"), rows
         )

@@ -18,7 +18,8 @@ FloatArray = npt.NDArray[np.float64]
 
 SMALLEST, LARGEST = 1e-12, 1e12
 """What a positive quantity may be: times and distances made of such numbers neither overflow nor vanish."""
-_UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")
+# Besides what steers terminals, what turns round all that follows, in browsers, too.
+_UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 BOUNDS = f", from {SMALLEST:g} to {LARGEST:g}"
 
 
@@ -129,6 +130,14 @@ class Scenario:
         """What people call a robot: its name, or "robot" and its number."""
         return self.robot_names[robot] if self.robot_names else f"robot {robot}"
 
+    def task_label(self, task: int) -> str:
+        """A task for messages about code or files, where it is a number: that and, if it has one, its name."""
+        return f"{task} ({self.task_names[task]})" if self.task_names else str(task)
+
+    def robot_label(self, robot: int) -> str:
+        """A robot likewise."""
+        return f"{robot} ({self.robot_names[robot]})" if self.robot_names else str(robot)
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scenario):
             return NotImplemented
@@ -160,7 +169,15 @@ class Scenario:
         ]  # fmt: skip
         width, height = self.map_size
         title = f"{self.name}: {self.num_tasks} tasks, {self.num_robots} robots, map {width:g} by {height:g}"
-        picture = map_of(self.map_size, self.task_xy.tolist(), self.deadline.tolist(), self.robot_xy.tolist())
+        tasks, robots = ((places - self.map_origin).tolist() for places in (self.task_xy, self.robot_xy))
+        picture = map_of(
+            self.map_size,
+            tasks,
+            self.deadline.tolist(),
+            robots,
+            [f"task {self.task_name(task)}" for task in range(self.num_tasks)],
+            [self.robot_name(robot) for robot in range(self.num_robots)],
+        )
         return table(title, ("", "least", "mean", "most"), rows) + picture
 
 

@@ -128,9 +128,10 @@ class Trace:
         left = [robot for robot, route in enumerate(plan.routes) if len(mission.routes[robot]) < len(route)]
         if left:
             robot = left[0]
+            task = plan.routes[robot][len(mission.routes[robot])]
             raise PlanError(
-                f"mask rule {mission.mask_rule!r} leaves robot {robot} nothing to choose where the plan goes on with "
-                f"task {plan.routes[robot][len(mission.routes[robot])]}; expected a rule that the plan keeps to"
+                f"mask rule {mission.mask_rule!r} leaves robot {scenario.robot_label(robot)} nothing to choose where "
+                f"the plan goes on with task {scenario.task_label(task)}; expected a rule that the plan keeps to"
             )
         return cls(scenario, tuple(choices), mission.mask_rule, plan.method, bound=plan.bound)
 

@@ -12,9 +12,12 @@ import operator
 from dataclasses import dataclass
 
 from mrta_zoo.errors import PlanError
-from mrta_zoo.html import table
+from mrta_zoo.html import in_order, table
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
+
+COST = "Eq. 1: the sum of finish / deadline over the tasks missed"
+"""What the cost is, for where it is shown; `Score` says it in full."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +53,8 @@ class Score:
         distance: what all robots travelled together, in distance units.
         makespan: the latest finish, in time units; 0 if nothing is done.
         schedule: for each robot its visits, in order.
+        task_names: what people call the tasks, as in `Scenario`; empty if they have no names but their numbers.
+        robot_names: likewise for the robots.
     """
 
     tasks: int
@@ -59,17 +64,21 @@ class Score:
     distance: float
     makespan: float
     schedule: tuple[tuple[Visit, ...], ...]
+    task_names: tuple[str, ...] = ()
+    robot_names: tuple[str, ...] = ()
 
     def _repr_html_(self) -> str:
         """What a notebook shows: the scores, and what each robot did."""
         title = (
             f"{self.completed} of {self.tasks} tasks completed ({100 * self.completion:.1f} %), cost {self.cost:.3f}, "
-            f"distance {self.distance:.1f}, makespan {self.makespan:.1f}"
+            f"distance {self.distance:.1f}, makespan {self.makespan:.1f} (cost by {COST})"
         )
+        tasks = self.task_names or range(self.tasks)
+        robots = self.robot_names or range(len(self.schedule))
         rows = [
             (robot, f"{sum(visit.completed for visit in visits)} of {len(visits)}",
-             visits[-1].finish if visits else "-", " → ".join(str(visit.task) for visit in visits) or "-")
-            for robot, visits in enumerate(self.schedule)
+             visits[-1].finish if visits else "-", in_order(tasks[visit.task] for visit in visits) or "-")
+            for robot, visits in zip(robots, self.schedule, strict=True)
         ]  # fmt: skip
         return table(title, ("robot", "completed", "last finish", "tasks"), rows)
 
@@ -103,6 +112,8 @@ def verify(scenario: Scenario, plan: Plan) -> Score:
         distance=math.fsum(leg for robot, route in enumerate(routes) for leg in _legs(scenario, robot, route)),
         makespan=makespan,
         schedule=schedule,
+        task_names=scenario.task_names,
+        robot_names=scenario.robot_names,
     )
 
 
@@ -143,7 +154,7 @@ def _routes(scenario: Scenario, plan: Plan) -> list[list[int]]:
     for robot, route in enumerate(plan.routes):
         routes.append([])
         for position, entry in enumerate(route):
-            place = f"position {position} of robot {robot}'s route"
+            place = f"position {position} of robot {scenario.robot_label(robot)}'s route"
             task = _integer(entry, place)
             if not 0 <= task < scenario.num_tasks:
                 raise PlanError(
@@ -151,7 +162,7 @@ def _routes(scenario: Scenario, plan: Plan) -> list[list[int]]:
                     f"0 to {scenario.num_tasks - 1}"
                 )
             if task in taken:
-                raise PlanError(f"task {task} is taken twice, at {taken[task]} and at {place}")
+                raise PlanError(f"task {scenario.task_label(task)} is taken twice, at {taken[task]} and at {place}")
             taken[task] = place
             routes[-1].append(task)
     return routes

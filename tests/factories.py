@@ -102,3 +102,24 @@ def completion_rate(env: Any) -> float:
     """Of the mission under way."""
     mission = env.unwrapped.mission
     return mission.completed() / mission.scenario.num_tasks
+
+
+def named_scenario() -> Scenario:
+    """Five tasks and two robots, most with names that somebody might take for markup.
+
+    Ann can do valve-A from 0 to 15 (10 of way, 5 of work) and then pump #3 <b> from 15 to 45 (20 and 10). Bob & Co,
+    twice as fast and strong, can do =SUM(A1) until 17 (30 / 2 and 4 / 2) or else $x$ until 21 (40 / 2 and 2 / 2),
+    not both in time. 弁[red] is due at 20, when Ann has come 20 of 100 and Bob & Co 40 of 141 units.
+    """
+    return Scenario(
+        task_xy=[[10, 0], [30, 0], [100, 30], [0, 100], [60, 0]],
+        deadline=[20, 50, 30, 20, 25],
+        workload=[5, 10, 4, 0, 2],
+        robot_xy=[[0, 0], [100, 0]],
+        capacity=[1, 2],
+        speed=[1, 2],
+        map_size=(100, 100),
+        name="named",
+        task_names=("valve-A", "pump #3 <b>", "=SUM(A1)", "弁[red]", "$x$"),
+        robot_names=("Ann", "Bob & Co"),
+    )

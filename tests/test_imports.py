@@ -36,6 +36,7 @@ LAYERS = (
             "mrta_zoo.mission",
             "mrta_zoo.batch",
             "mrta_zoo.objective",
+            "mrta_zoo.left_out",
             "mrta_zoo.verify",
             "mrta_zoo.trace",
             "mrta_zoo.generators",

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from command_line import Captured, fails
-from factories import small_scenario
+from factories import named_scenario, small_scenario
 from real_cases import REAL, needs_real_cases
 
 from mrta_zoo.cli import main
@@ -215,3 +215,22 @@ def test_a_plan_of_another_name_is_noticed(mission: str, tmp_path: Path, capsys:
     ):
         assert main(arguments) == 0
         assert "is a plan for elsewhere; the scenario is" in capsys.readouterr().err
+
+
+def test_names_are_kept_in_sessions_and_comparisons(tmp_path: Path, capsys: Captured) -> None:
+    path, session, out = (str(tmp_path / name) for name in ("named.csv", "session.json", "comparison.json"))
+    write_scenario(named_scenario(), path)
+    lines = script(tmp_path, "pump #3 <b>")
+    assert main(["step", path, "--policy", "nearest", "--session", session, "--script", lines]) == 0
+    assert "> pump #3 <b>\ndecision 0: Ann takes task pump #3 <b>, until 40.0 (the" in capsys.readouterr().out
+    trace = read_trace(session)
+    assert (trace.scenario, trace.choices[0].task) == (named_scenario(), 1)
+    write_plan(Plan(((0, 1), (4,))), tmp_path / "plan.json")
+    assert main(["compare", path, "--methods", f"nearest,{tmp_path / 'plan.json'}", "--out", out]) == 0
+    output = capsys.readouterr().out
+    assert "They part at decision 1, at 0.0, when Bob & Co chooses\n" in output
+    assert f"{tmp_path / 'plan.json'} with task =SUM(A1) there and then by itself: completed 3 (+0)" in output
+    assert ["=SUM(A1)", "30.0", "Bob", "&", "Co", "17.0", "not", "taken"] in [
+        row.split() for row in output.splitlines()
+    ]
+    assert json.loads(Path(out).read_text(encoding="utf-8"))["task_names"][1] == "pump #3 <b>"

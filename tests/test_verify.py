@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from factories import named_scenario
 
 from mrta_zoo.errors import PlanError
 from mrta_zoo.plan import Plan
@@ -126,3 +127,13 @@ def test_integers_of_any_kind_are_tasks() -> None:
 def test_errors(routes: Any, message: str) -> None:
     with pytest.raises(PlanError, match=f"^{re.escape(message)}$"):
         verify(SCENARIO, Plan(routes))
+
+
+def test_messages_have_numbers_and_names() -> None:
+    named = named_scenario()
+    for routes, message in (
+        ([[0], [0]], r"^task 0 \(valve-A\) is taken twice, at position 0 of robot 0 \(Ann\)'s route and at position 0"),
+        ([[], [7]], r"^position 0 of robot 1 \(Bob & Co\)'s route names task 7; "),
+    ):
+        with pytest.raises(PlanError, match=message):
+            verify(named, Plan.of(routes))

@@ -26,6 +26,7 @@ class Prospect:
 
     Attributes:
         task: the task.
+        name: what people call it: its name, or its number.
         distance: from where the robot is free next, in distance units.
         travel: the time it needs to get there.
         finish: when it would be done, were it the robot's next.
@@ -37,10 +38,12 @@ class Prospect:
         done: when that robot finishes it, None if it is free.
         rival: the robot among the others that could be done first and in time, None if there is none or it is taken.
         rival_finish: when that robot would be done, were it its next; None if there is none.
+        who: what people call the robot that took it or, if it is free, the rival; empty if there is neither.
         probability: the policy's, None if it has none.
     """
 
     task: int
+    name: str
     distance: float
     travel: float
     finish: float
@@ -52,17 +55,18 @@ class Prospect:
     done: float | None
     rival: int | None
     rival_finish: float | None
+    who: str
     probability: float | None
 
     def __str__(self) -> str:
         """What there is to say of it besides numbers: why it may not be chosen, or who else could do it."""
         if self.taken_by is not None and self.done is not None:
             doing = {
-                Status.ASSIGNED: f"robot {self.taken_by} on it until {self.done:.1f}",
-                Status.COMPLETED: f"done by robot {self.taken_by} at {self.done:.1f}",
-                Status.MISSED: f"late by robot {self.taken_by} at {self.done:.1f}",
+                Status.ASSIGNED: f"{self.who} on it until {self.done:.1f}",
+                Status.COMPLETED: f"done by {self.who} at {self.done:.1f}",
+                Status.MISSED: f"late by {self.who} at {self.done:.1f}",
             }
-            return doing.get(self.status, f"taken by robot {self.taken_by}")
+            return doing.get(self.status, f"taken by {self.who}")
         if self.reason == MaskReason.DEADLINE_PASSED:
             return "deadline passed"
         if self.reason == MaskReason.TOO_LATE:
@@ -70,7 +74,7 @@ class Prospect:
         late = f"late by {-self.slack:.1f}; " if self.slack < 0 else ""
         if self.rival is None or self.rival_finish is None:
             return late + "nobody else in time"
-        return late + f"robot {self.rival} could by {self.rival_finish:.1f}"
+        return late + f"{self.who} could by {self.rival_finish:.1f}"
 
 
 def outlook(
@@ -112,6 +116,7 @@ def outlook(
     return [
         Prospect(
             task=task,
+            name=scenario.task_name(task),
             distance=distance,
             travel=time,
             finish=end,
@@ -123,6 +128,7 @@ def outlook(
             done=done if taken_by >= 0 else None,
             rival=who if taken_by < 0 and first < np.inf else None,
             rival_finish=first if taken_by < 0 and first < np.inf else None,
+            who=scenario.robot_name(taken_by if taken_by >= 0 else who) if taken_by >= 0 or first < np.inf else "",
             probability=None if probabilities is None else given.get(task, 0.0),
         )
         for task, distance, time, end, slack, due, reason, status, taken_by, done, who, first in columns

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from mrta_zoo.debug.called import called, cells, headings
 from mrta_zoo.debug.outlook import SortKey
 from mrta_zoo.debug.stepper import Stepper
 from mrta_zoo.render.whereabouts import whereabouts
@@ -76,14 +77,14 @@ def _tasks(stepper: Stepper, view: View) -> Listing:
     own = robot == stepper.robot
     advice, made = (stepper.advice, stepper.made) if own else (None, None)
     probable = advice is not None and advice.probabilities is not None
-    rows = []
+    rows, scenario = [], stepper.scenario
     for each in stepper.outlook(robot, view.order):
         advised, chosen = advice is not None and each.task == advice.task, made is not None and each.task == made.task
         share = "" if each.probability is None else f"{100 * each.probability:.1f}"
         free = each.reason == MaskReason.CHOOSABLE
-        cells = (
+        row = (
             ("*" if chosen else "") + (">" if advised else ""),
-            str(each.task),
+            *cells(each.task, scenario.task_names),
             f"{each.distance:.1f}",
             f"{each.travel:.1f}",
             f"{each.finish:.1f}",
@@ -92,15 +93,17 @@ def _tasks(stepper: Stepper, view: View) -> Listing:
             *((share if free else "",) if probable else ()),
             str(each),
         )
-        rows.append(Row(cells, "advised" if advised else "made" if chosen else "plain" if free else "faint"))
+        rows.append(Row(row, "advised" if advised else "made" if chosen else "plain" if free else "faint"))
     choices = int(stepper.mission.mask(robot).sum())
-    title = f"robot {robot} may choose {choices} of {len(rows)} tasks" + ("" if own else " when it is next free")
-    numbers = ("task", "dist", "travel", "finish", "slack", "due", *(("prob %",) if probable else ()))
-    return Listing(title, ("", *numbers, ""), ("",), rows)
+    when = "" if own else " when it is next free"
+    title = f"{scenario.robot_name(robot)} may choose {choices} of {len(rows)} tasks{when}"
+    numbers = ("dist", "travel", "finish", "slack", "due", *(("prob %",) if probable else ()))
+    tasks = headings("task", scenario.task_names)
+    return Listing(title, ("", *tasks, *numbers, ""), _texts(tasks, scenario.task_names), rows)
 
 
 def _robots(stepper: Stepper) -> Listing:
-    mission = stepper.mission
+    mission, scenario = stepper.mission, stepper.scenario
     rows = []
     for robot, route in enumerate(mission.routes):
         now = whereabouts(mission, robot)
@@ -108,22 +111,23 @@ def _robots(stepper: Stepper) -> Listing:
             "acting": "chooses now",
             "waiting": "is free now",
             "retired": "retired",
-            "travelling": f"to task {mission.heading[robot]}",
-            "working": f"at task {mission.heading[robot]}",
+            "travelling": f"to task {scenario.task_name(mission.heading[robot])}",
+            "working": f"at task {scenario.task_name(mission.heading[robot])}",
         }[now.doing]
-        scenario = mission.scenario
-        cells = (
-            str(robot), f"({now.x:.1f}, {now.y:.1f})", f"{scenario.capacity[robot]:g}", f"{scenario.speed[robot]:g}",
+        row = (
+            *cells(robot, scenario.robot_names), f"({now.x:.1f}, {now.y:.1f})",
+            f"{scenario.capacity[robot]:g}", f"{scenario.speed[robot]:g}",
             str(len(route)), f"{mission.ready[robot]:.1f}", str(int(mission.mask(robot).sum())), doing,
         )  # fmt: skip
-        rows.append(Row(cells, "advised" if now.doing == "acting" else "faint" if now.doing == "retired" else "plain"))
-    columns = ("robot", "place", "capacity", "speed", "taken", "free at", "choices", "")
-    return Listing(f"{len(rows)} robots", columns, ("",), rows)
+        rows.append(Row(row, "advised" if now.doing == "acting" else "faint" if now.doing == "retired" else "plain"))
+    robots = headings("robot", scenario.robot_names)
+    columns = (*robots, "place", "capacity", "speed", "taken", "free at", "choices", "")
+    return Listing(f"{len(rows)} robots", columns, _texts(robots, scenario.robot_names), rows)
 
 
 def _log(stepper: Stepper) -> Listing:
     """The decisions made so far, the last one first."""
-    trace = stepper.trace()
+    trace, scenario = stepper.trace(), stepper.scenario
     rows = []
     for mission, decision in trace.replay():
         if decision.index == stepper.position:
@@ -131,12 +135,19 @@ def _log(stepper: Stepper) -> Listing:
         choice = decision.choice
         task = choice.task
         finish = None if task is None else float(mission.finish_if[decision.robot, task])
-        words = "" if choice.advice is None else f"the policy's choice was task {choice.advice}"
-        cells = (
-            str(decision.index), f"{decision.time:.1f}", str(decision.robot), "stays" if task is None else str(task),
+        words = "" if choice.advice is None else f"the policy's choice was task {scenario.task_name(choice.advice)}"
+        row = (
+            str(decision.index), f"{decision.time:.1f}", called(decision.robot, scenario.robot_names),
+            "stays" if task is None else scenario.task_name(task),
             "" if finish is None else f"{finish:.1f}",
-            "" if finish is None or task is None else f"{stepper.scenario.deadline[task] - finish:.1f}", words,
+            "" if finish is None or task is None else f"{scenario.deadline[task] - finish:.1f}", words,
         )  # fmt: skip
-        rows.append(Row(cells, "plain" if choice.advice is None else "made"))
+        rows.append(Row(row, "plain" if choice.advice is None else "made"))
     columns = ("decision", "time", "robot", "task", "finish", "slack", "")
-    return Listing(f"{len(rows)} decisions so far, the last one first", columns, ("",), rows[::-1])
+    texts = (*_texts(("robot",), scenario.robot_names), *_texts(("task",), scenario.task_names))
+    return Listing(f"{len(rows)} decisions so far, the last one first", columns, texts, rows[::-1])
+
+
+def _texts(headings: tuple[str, ...], names: Sequence[str]) -> tuple[str, ...]:
+    """The columns that hold text: those without a heading, and the last of these if there are names."""
+    return ("", *headings[-1:]) if names else ("",)

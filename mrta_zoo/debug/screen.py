@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 from rich import box
+from rich.cells import cell_len
 from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from mrta_zoo.debug.called import called, shortened
 from mrta_zoo.debug.session import Session
 from mrta_zoo.rules import Status
+from mrta_zoo.scenario import Scenario
 
 AROUND = 11
 """Lines of a screen besides the rows of the table: the header, the table's title, head and foot, message and prompt."""
@@ -18,6 +21,8 @@ BETWEEN = 2
 """Columns between two of a table."""
 STYLES = {"advised": "bold green", "made": "yellow", "plain": "", "faint": "bright_black"}
 NEXT_SHOWN = 8
+NOTE, NAME = 24, 10
+"""Columns that notes keep until names are cut, and that names keep until notes are cut further."""
 
 
 def screen(session: Session, rows: int, width: int, message: str = "") -> Group:
@@ -63,11 +68,15 @@ def table(session: Session, rows: int, width: int) -> list[RenderableType]:
     first = view.page * rows
     page = listing.rows[first : first + rows]
     widths = [
-        max(len(cell) for cell in (column, *(row.cells[index] for row in listing.rows)))
+        max(cell_len(cell) for cell in (column, *(row.cells[index] for row in listing.rows)))
         for index, column in enumerate(listing.columns)
     ]
-    room = width - sum(widths[:-1]) - BETWEEN * (len(widths) - 1)
-    widths[-1] = max(min(widths[-1], room), 1)
+    over = sum(widths) + BETWEEN * (len(widths) - 1) - width
+    last = len(widths) - 1
+    texts = [index for index, column in enumerate(listing.columns) if column in listing.left and index < last]
+    for index, least in ((last, NOTE), *((text, NAME) for text in texts), (last, 1)):
+        cut = min(max(over, 0), max(widths[index] - least, 0))
+        widths[index], over = widths[index] - cut, over - cut
     for column, needed in zip(listing.columns, widths, strict=True):
         left = column in listing.left
         shown.add_column(column, justify="left" if left else "right", no_wrap=True, overflow="ellipsis", width=needed)
@@ -82,8 +91,10 @@ def prompt(session: Session) -> str:
     advice = session.stepper.advice
     if advice is None:
         return "? help, q quit > "
-    chosen = "stay" if advice.task is None else f"task {advice.task}"
-    return f"Enter: {chosen}, or number; b back, f forward, ? help, q quit > "
+    scenario = session.stepper.scenario
+    chosen = _choice(scenario, advice.task, 12)
+    other = "name" if scenario.task_names else "number"
+    return f"Enter: {chosen}, or {other}; b back, f forward, ? help, q quit > "
 
 
 def _turn(session: Session) -> str:
@@ -92,11 +103,16 @@ def _turn(session: Session) -> str:
     x, y = stepper.mission.position[robot]
     what = ""
     if (advice := stepper.advice) is not None:
-        what = f"; {stepper.method or 'policy'}: {'stay' if advice.task is None else f'task {advice.task}'}"
+        what = f"; {stepper.method or 'policy'}: {_choice(scenario, advice.task, 16)}"
     return (
-        f"robot {robot} chooses{what}; at ({x:.1f}, {y:.1f}), capacity {scenario.capacity[robot]:.3g}, "
-        f"speed {scenario.speed[robot]:.3g}"
+        f"{shortened(scenario.robot_name(robot), 16)} chooses{what}; at ({x:.1f}, {y:.1f}), "
+        f"capacity {scenario.capacity[robot]:.3g}, speed {scenario.speed[robot]:.3g}"
     )
+
+
+def _choice(scenario: Scenario, task: int | None, most: int) -> str:
+    """A choice, the task's name in so many columns."""
+    return "stay" if task is None else f"task {shortened(scenario.task_name(task), most)}"
 
 
 def _queue(session: Session) -> str:
@@ -109,5 +125,6 @@ def _queue(session: Session) -> str:
     )
     if not waiting:
         return "the only robot left"
-    text = ", ".join(f"{robot} at {ready:.1f}" for ready, robot in waiting[:NEXT_SHOWN])
+    names = mission.scenario.robot_names
+    text = ", ".join(f"{shortened(called(robot, names), 16)} at {ready:.1f}" for ready, robot in waiting[:NEXT_SHOWN])
     return f"next robots: {text}" + (", …" if len(waiting) > NEXT_SHOWN else "")

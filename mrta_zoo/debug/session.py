@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NoReturn, get_args
 
 from mrta_zoo.debug.advisors import Advisor, PolicyAdvisor
+from mrta_zoo.debug.called import find, found, numbers_count
 from mrta_zoo.debug.outlook import SortKey
 from mrta_zoo.debug.pages import Listing, View, listing
 from mrta_zoo.debug.stepper import Stepper
@@ -39,7 +40,7 @@ class Session:
         self.unsaved = 0
 
     def do(self, line: str) -> str:
-        """Carry out a command; an empty one is `follow`, and a number alone is `take`.
+        """Carry out a command; an empty one is `follow`, and a task's name or number alone is `take`.
 
         Returns:
             What has come of it, in a line.
@@ -47,18 +48,9 @@ class Session:
         Raises:
             MrtaError: if it cannot be done; nothing is changed then.
         """
-        name, *words = line.split() or ["follow"]
-        if name.isdecimal() and not words:
-            name, words = "take", [name]
-        command = _BY_NAME.get(name.lower())
-        if command is None:
-            known = ", ".join(each.name for each in COMMANDS)
-            raise ConfigError(f"there is no command {name!r}; expected a number of a task, or one of {known}")
-        if len(words) > (command.argument != "") or (not words and command.argument.isupper()):
-            expected = f"{command.name} {command.argument}".strip()
-            raise ConfigError(f"the command is {line.strip()!r}; expected {expected}")
+        command, argument = self._understood(line.strip())
         before = self.stepper.position
-        said = command.run(self, words[0] if words else "")
+        said = command.run(self, argument)
         if self.stepper.position != before or command.name == "load":
             self.view = View(order=self.view.order)
         return said
@@ -67,12 +59,35 @@ class Session:
         """The table that is looked at."""
         return listing(self.stepper, self.view, [(each.usage, each.summary) for each in COMMANDS])
 
+    def _understood(self, line: str) -> tuple[Command, str]:
+        """The command, and what follows it."""
+        if not line:
+            return _BY_NAME["follow"], ""
+        names = self.stepper.scenario.task_names
+        name, argument = [*line.split(maxsplit=1), ""][:2]
+        command = _BY_NAME.get(name.lower())
+        if find(line, names) is not None:
+            if command is not None:
+                other = next((each for each in (command.short, command.name) if each and each not in names), "")
+                expected = f"take {line} for the task" + (f", or {other} for the command" if other else "")
+                raise ConfigError(f"{line!r} is a task and a command; expected {expected}")
+            return _BY_NAME["take"], line
+        if command is None:
+            known = ", ".join(each.name for each in COMMANDS)
+            task = "a number of a task" if not names else "a task's name" + " or number" * numbers_count(names)
+            raise ConfigError(f"there is no command {name!r}; expected {task}, or one of {known}")
+        several = len(argument.split()) > 1 and not command.names_one
+        if several or (argument and not command.argument) or (not argument and command.argument.isupper()):
+            expected = f"{command.name} {command.argument}".strip()
+            raise ConfigError(f"the command is {line!r}; expected {expected}")
+        return command, argument
+
     # Each command is a function of the session and its argument, "" if there is none.
     def follow(self, _: str) -> str:
         return self._chosen(self.stepper.follow)
 
     def take(self, task: str) -> str:
-        number = _number(task, "task")
+        number = found(task, "task", self.stepper.scenario.task_names)
         return self._chosen(lambda: self.stepper.take(number), own=True)
 
     def stay(self, _: str) -> str:
@@ -91,7 +106,7 @@ class Session:
         return self.where()
 
     def jump(self, robot: str) -> str:
-        self.stepper.jump(_number(robot, "robot"))
+        self.stepper.jump(found(robot, "robot", self.stepper.scenario.robot_names))
         return self.where()
 
     def end(self, _: str) -> str:
@@ -107,7 +122,7 @@ class Session:
         return ""
 
     def tasks(self, robot: str) -> str:
-        number = _number(robot, "robot") if robot else None
+        number = found(robot, "robot", self.stepper.scenario.robot_names) if robot else None
         if number is not None:
             self.stepper.outlook(number)  # there must be such a robot
         self.view = View("tasks", robot=number, order=self.view.order)
@@ -164,21 +179,22 @@ class Session:
                 f"the mission is over: completed {mission.completed()} of {stepper.scenario.num_tasks} tasks, "
                 f"cost {mission.cost():.3f}, makespan {mission.time:.1f}"
             )
-        return f"decision {stepper.position}: robot {stepper.robot} chooses at {stepper.mission.time:.1f}"
+        robot = stepper.scenario.robot_name(stepper.robot)
+        return f"decision {stepper.position}: {robot} chooses at {stepper.mission.time:.1f}"
 
     def _chosen(self, choose: Callable[[], Choice], own: bool = False) -> str:
         robot, index = self.stepper.robot, self.stepper.position
-        choice = choose()
+        choice, scenario = choose(), self.stepper.scenario
         self.unsaved += own
         if choice.task is None:
             what = "stays for good"
         else:
             finish = float(self.stepper.mission.finish[choice.task])
-            late = "" if finish <= self.stepper.scenario.deadline[choice.task] else ", late"
-            what = f"takes task {choice.task}, until {finish:.1f}{late}"
+            late = "" if finish <= scenario.deadline[choice.task] else ", late"
+            what = f"takes task {scenario.task_name(choice.task)}, until {finish:.1f}{late}"
         if choice.advice is not None:
-            what += f" (the policy's choice: task {choice.advice})"
-        return f"decision {index}: robot {robot} {what}"
+            what += f" (the policy's choice: task {scenario.task_name(choice.advice)})"
+        return f"decision {index}: {scenario.robot_name(robot)} {what}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,6 +216,11 @@ class Command:
     run: Callable[[Session, str], str]
 
     @property
+    def names_one(self) -> bool:
+        """Whether what follows is a task or a robot, whose name may hold blanks."""
+        return self.argument.strip("[]").lower() in ("task", "robot")
+
+    @property
     def usage(self) -> str:
         """How it is written."""
         return ", ".join(filter(None, (self.short, self.name))) + (f" {self.argument}" if self.argument else "")
@@ -207,7 +228,7 @@ class Command:
 
 COMMANDS: Sequence[Command] = (
     Command("follow", "", "", "take the policy's choice, > in the table; as Enter alone", Session.follow),
-    Command("take", "", "TASK", "take this task; as its number alone", Session.take),
+    Command("take", "", "TASK", "take this task; as its name or number alone", Session.take),
     Command("stay", "", "", "let the robot stay for good, as a plan may (agents cannot)", Session.stay),
     Command("back", "b", "[n]", "take back the last decision, or n of them", Session.back),
     Command("forward", "f", "[n]", "on by 1 or n: as before (*), then as the policy chooses", Session.forward),

@@ -214,7 +214,7 @@ class Stepper:
             self.go_to(here)
             raise
         self.go_to(here)
-        raise ActionError(f"robot {robot} does not choose again after this")
+        raise ActionError(f"robot {self.scenario.robot_label(robot)} does not choose again after this")
 
     def finish(self) -> None:
         """Go on to the end of the mission.

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 
 from rich.console import Console, Group, RenderableType
 
+from mrta_zoo.debug.called import without_comment
 from mrta_zoo.debug.screen import fit, header, prompt, screen, table
 from mrta_zoo.debug.session import Session
 from mrta_zoo.errors import MrtaError
@@ -46,8 +47,8 @@ def interact(session: Session, console: Console) -> None:
 def run_script(session: Session, lines: Iterable[str], source: str, console: Console) -> None:
     """Carry out commands, one a line, and print what comes of each; at the end, where that has led.
 
-    Empty lines and what follows a ``#`` are passed over, so that the policy's choice is written `follow`. Besides the
-    commands of a session there is ``show [rows]``, which prints what a terminal would.
+    Empty lines and what follows a ``#`` that is no part of a name are passed over, so that the policy's choice is
+    written `follow`. Besides the commands of a session there is ``show [rows]``, which prints what a terminal would.
 
     Args:
         session: is stepped.
@@ -59,7 +60,8 @@ def run_script(session: Session, lines: Iterable[str], source: str, console: Con
         MrtaError: at the first command that cannot be carried out; the message names its line.
     """
     for number, line in enumerate(lines, start=1):
-        command = line.partition("#")[0].strip()
+        scenario = session.stepper.scenario
+        command = without_comment(line, (*scenario.task_names, *scenario.robot_names)).strip()
         if not command:
             continue
         console.print(f"> {command}")

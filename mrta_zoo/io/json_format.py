@@ -15,6 +15,7 @@ from mrta_zoo.errors import PlanError, ScenarioError
 from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow
 from mrta_zoo.io.source import StrPath, read_text
 from mrta_zoo.io.strict_json import read_document, write_document
+from mrta_zoo.left_out import Reason
 from mrta_zoo.paths import composed, suffix_of
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
@@ -72,14 +73,30 @@ class ScenarioJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     name: str = ""
 
 
-class ScheduledTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One stop of a robot: when it arrives, when it finishes, and whether that met the deadline."""
+class ScheduledTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
+    """One stop of a robot: when it arrives, when it finishes, and whether that met the deadline.
+
+    The names of the task and the robot are there if they have one.
+    """
 
     task: Index
     arrival: NonNegative
     finish: NonNegative
     deadline: Positive
     completed: bool
+    name: str | None = None
+    robot_name: str | None = None
+
+
+class LeftOutTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
+    """A task that nobody takes, its name if it has one, and why.
+
+    It is out of reach if no robot could finish it by its deadline, even if it went straight there at the start.
+    """
+
+    task: Index
+    reason: Reason
+    name: str | None = None
 
 
 class PlanScore(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -94,7 +111,10 @@ class PlanScore(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class PlanJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A plan file: for each robot its tasks in order, for people its schedule and score, and what no plan exceeds."""
+    """A plan file: for each robot its tasks in order, for people its schedule and score, and what no plan exceeds.
+
+    What is left out is for people, too, as are names: tasks and robots are known by their numbers, from 0.
+    """
 
     format: Literal["mrta_zoo.plan"]
     version: Literal[1]
@@ -103,6 +123,7 @@ class PlanJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     method: str = ""
     schedule: tuple[tuple[ScheduledTask, ...], ...] | None = None
     score: PlanScore | None = None
+    left_out: tuple[LeftOutTask, ...] | None = None
     bound: Index | None = None  # completed tasks
 
 
@@ -112,6 +133,7 @@ _PARTS: dict[str, type[msgspec.Struct]] = {
     "robots": RobotJson,
     "schedule": ScheduledTask,
     "score": PlanScore,
+    "left_out": LeftOutTask,
 }
 
 
@@ -204,7 +226,7 @@ def _named(names: tuple[str, ...], index: int) -> dict[str, str]:
 
 
 def read_plan(path: StrPath) -> Plan:
-    """The plan of a JSON plan file. Its schedule and score are checked for form and left out.
+    """The plan of a JSON plan file. What is there for people is checked for form only, and dropped.
 
     Raises:
         PlanError: if the file is missing or malformed.
@@ -219,8 +241,9 @@ def write_plan(
     *,
     schedule: Sequence[Sequence[ScheduledTask]] | None = None,
     score: PlanScore | None = None,
+    left_out: Sequence[LeftOutTask] | None = None,
 ) -> None:
-    """Write a plan, one route a line, and for people the schedule (a sequence for each robot) and score.
+    """Write a plan, one route a line, and for people the schedule (a sequence for each robot), score and the rest.
 
     Raises:
         PlanError: if the file cannot be written.
@@ -236,6 +259,8 @@ def write_plan(
         document["bound"] = plan.bound
     if score is not None:
         document["score"] = msgspec.to_builtins(score)
+    if left_out is not None:
+        document["left_out"] = msgspec.to_builtins(left_out)
     if schedule is not None:
         document["schedule"] = [[msgspec.to_builtins(stop) for stop in stops] for stops in schedule]
     write_document(document, path, PlanError)

@@ -15,25 +15,26 @@ if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
 
-def write_records(rows: Sequence[DataclassInstance], path: StrPath) -> None:
+def write_records(rows: Sequence[DataclassInstance], path: StrPath, of: type[DataclassInstance] | None = None) -> None:
     """Write rows of one class as CSV with a header, numbers in full precision; the whole file or nothing.
 
     Args:
-        rows: at least one, as their class gives the header.
+        rows: at least one, unless their class is given.
         path: the file.
+        of: their class, which gives the header; by default that of the first.
 
     Raises:
         ConfigError: if there is no row or the file cannot be written.
     """
-    if not rows:
+    if not rows and of is None:
         raise ConfigError(f"{path} cannot be written: there are no rows; expected at least one")
-    write_text(records_text(rows), path, ConfigError)
+    write_text(records_text(rows, of), path, ConfigError)
 
 
-def records_text(rows: Sequence[DataclassInstance]) -> str:
-    """Rows of one class, at least one, as `write_records` writes them."""
+def records_text(rows: Sequence[DataclassInstance], of: type[DataclassInstance] | None = None) -> str:
+    """What `write_records` writes."""
     stream = io.StringIO()
     writer = csv.writer(stream, lineterminator="\n")
-    writer.writerow(field.name for field in fields(rows[0]))
+    writer.writerow(field.name for field in fields(of or rows[0]))
     writer.writerows(astuple(row) for row in rows)
     return stream.getvalue()

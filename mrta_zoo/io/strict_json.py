@@ -135,8 +135,10 @@ def _sentence(path: StrPath, message: str, document: Any, kind: type[msgspec.Str
         if field[1] == "required":
             return f"{where} has no field {shown(field[2])}; expected {fields}"
         return f"{where} has an unknown field {shown(field[2])}; expected only {fields}"
-    if complaint.startswith("Invalid enum value") and place in kind.__struct_fields__:
-        return f"{where} is {shown(value)}; expected one of {', '.join(get_args(get_type_hints(kind)[place]))}"
+    if complaint.startswith("Invalid enum value"):
+        way = re.split(r"\W+", place)
+        allowed = get_type_hints(kind if len(way) == 1 else parts[way[0]])[way[-1]]
+        return f"{where} is {shown(value)}; expected one of {', '.join(get_args(allowed))}"
     expected = _EXPECTED.match(complaint)
     if not expected:
         return f"{where} is {shown(value)}; {complaint}"

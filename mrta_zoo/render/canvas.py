@@ -23,6 +23,7 @@ import pygame  # noqa: E402  (after the check, whose message says how to install
 Point = tuple[float, float]
 SCALE = 2
 """Shapes are drawn this much larger, then shrunk, which makes their edges smooth."""
+_IN_NO_FONT = "\uffff"
 
 
 class Canvas:
@@ -79,6 +80,22 @@ class Canvas:
         image = _written(text, round(SCALE * size), colour)
         x, y = _big(place)
         self._surface.blit(image, (x - align * image.get_width(), y - image.get_height() / 2))
+
+
+def text_width(text: str, size: float) -> float:
+    """How wide a line of text is, in pixels of the finished picture."""
+    return _font(round(SCALE * size)).size(text)[0] / SCALE
+
+
+def fitted(name: str, otherwise: str, size: float, room: float) -> str:
+    """A name in so many pixels, its end left out if need be; `otherwise` if the font lacks one of its characters."""
+    metrics = _font(round(SCALE * size)).metrics
+    if metrics(_IN_NO_FONT)[0] in metrics(name):  # which it draws as boxes
+        return otherwise
+    if text_width(name, size) <= room:
+        return name
+    fits = (length for length in range(len(name) - 1, 0, -1) if text_width(name[:length] + "…", size) <= room)
+    return name[: next(fits, 0)] + "…"
 
 
 def as_array(picture: pygame.Surface) -> npt.NDArray[np.uint8]:

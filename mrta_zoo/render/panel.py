@@ -8,7 +8,7 @@ import numpy as np
 
 from mrta_zoo.mission import Mission
 from mrta_zoo.palette import FAINT, INK, MISSED, URGENCY, blend, robot_colour
-from mrta_zoo.render.canvas import Canvas
+from mrta_zoo.render.canvas import Canvas, fitted, text_width
 from mrta_zoo.rules import Status
 
 _TOP, _ROW = 60.0, 22.0
@@ -78,22 +78,36 @@ def _draw_legend(canvas: Canvas, mission: Mission, left: float) -> None:
 
 
 def _sentence(mission: Mission, robot: int, doing: str) -> str:
-    task, until = mission.heading[robot], mission.ready[robot]
-    return {
+    """What a robot does and, where robots have names, which one: its number is beside it."""
+    task, until, deadline = mission.heading[robot], mission.ready[robot], mission.scenario.deadline
+    who = "{robot}: " if mission.scenario.robot_names else ""
+    what = {
         "acting": "chooses now",
         "waiting": "is free",
         "retired": f"retired after {len(mission.routes[robot])} tasks",
-        "travelling": f"to task {task}, done at {until:.1f}, due {mission.scenario.deadline[task]:.1f}",
-        "working": f"at task {task} until {until:.1f}, due {mission.scenario.deadline[task]:.1f}",
+        "travelling": f"to task {{task}}, done at {until:.1f}, due {deadline[task]:.1f}",
+        "working": f"at task {{task}} until {until:.1f}, due {deadline[task]:.1f}",
     }[doing]
+    return _named(who + what, mission, robot, 17, _WIDTH - 29)
 
 
 def _words(mission: Mission, robot: int, doing: str) -> str:
-    task, until = mission.heading[robot], mission.ready[robot]
-    return {
+    until = mission.ready[robot]
+    what = {
         "acting": "chooses now",
         "waiting": "is free",
         "retired": f"retired ({len(mission.routes[robot])})",
-        "travelling": f"to {task}, done {until:.1f}",
-        "working": f"at {task} until {until:.1f}",
+        "travelling": f"to {{task}}, done {until:.1f}",
+        "working": f"at {{task}} until {until:.1f}",
     }[doing]
+    return _named(what, mission, robot, 16, _WIDTH / 2 - 25)
+
+
+def _named(what: str, mission: Mission, robot: int, size: float, room: float) -> str:
+    """A sentence with the names of a robot and its task put in, as much of them as there is room for."""
+    scenario, task = mission.scenario, mission.heading[robot]
+    left = (room - text_width(what.format(robot="", task=""), size)) / max(what.count("{"), 1)
+    return what.format(
+        robot=fitted(scenario.robot_name(robot), f"robot {robot}", size, left),
+        task=fitted(scenario.task_name(task), str(task), size, left),
+    )

@@ -13,10 +13,11 @@ import pygame
 
 from mrta_zoo.mission import Mission
 from mrta_zoo.palette import FAINT, GROUND, INK, MISSED, URGENCY, blend, robot_colour
-from mrta_zoo.render.canvas import Canvas, Point
+from mrta_zoo.render.canvas import Canvas, Point, fitted, text_width
 from mrta_zoo.render.panel import draw_panel
 from mrta_zoo.render.whereabouts import whereabouts
 from mrta_zoo.rules import Status
+from mrta_zoo.scenario import Scenario
 
 SIZE = (1040, 720)
 """Width and height in pixels; both even, as video formats want."""
@@ -24,7 +25,9 @@ SIZE = (1040, 720)
 _LEFT, _TOP, _WIDTH, _HEIGHT = 40.0, 52.0, 636.0, 636.0
 _PANEL_LEFT = 704.0
 _MOST_NUMBERED = 150
-"""Tasks on the map that still get their number."""
+"""Tasks on the map that still get their number or name."""
+_LONGEST_NAME = 64.0
+"""Of a task on the map, in pixels."""
 _RECENT_LEGS = 4
 """Of each trail, drawn ever fainter; those before are as faint as the last of them."""
 
@@ -32,10 +35,10 @@ _RECENT_LEGS = 4
 def draw(mission: Mission) -> pygame.Surface:
     """The mission at this moment, robots in transit where they are now, (1040, 720) pixels."""
     canvas = Canvas(SIZE, "#ffffff")
-    frame = _Frame.around(mission.scenario.map_size)
+    frame = _Frame.around(mission.scenario)
     canvas.text(mission.scenario.name[:48], (_LEFT, 27), 25, INK)
     canvas.text(f"time {mission.time:.1f}", (_PANEL_LEFT, 27), 25, INK)
-    _draw_ground(canvas, frame, mission.scenario.map_size)
+    _draw_ground(canvas, frame, mission.scenario)
     detail = min(1.0, max(0.45, 11.0 / mission.scenario.num_tasks**0.5))  # smaller marks where there are many
     here = [whereabouts(mission, robot) for robot in range(mission.scenario.num_robots)]
     places = [frame.pixel((each.x, each.y)) for each in here]
@@ -55,36 +58,41 @@ def draw(mission: Mission) -> pygame.Surface:
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """Where the map lies: pixels per distance unit, and the pixel of its origin, the lower left corner."""
+    """Where the map lies: pixels per distance unit, and the pixel of 0, 0, which may be far outside the picture."""
 
     scale: float
     origin: Point
 
     @classmethod
-    def around(cls, map_size: tuple[float, float]) -> _Frame:
-        width, height = map_size
+    def around(cls, scenario: Scenario) -> _Frame:
+        (width, height), (x, y) = scenario.map_size, scenario.map_origin
         scale = min(_WIDTH / width, _HEIGHT / height)
-        return cls(scale, (_LEFT + (_WIDTH - scale * width) / 2, _TOP + (_HEIGHT + scale * height) / 2))
+        left, bottom = _LEFT + (_WIDTH - scale * width) / 2, _TOP + (_HEIGHT + scale * height) / 2
+        return cls(scale, (left - scale * x, bottom + scale * y))
 
     def pixel(self, place: tuple[float, float]) -> Point:
         return (self.origin[0] + self.scale * place[0], self.origin[1] - self.scale * place[1])
 
 
-def _draw_ground(canvas: Canvas, frame: _Frame, map_size: tuple[float, float]) -> None:
+def _draw_ground(canvas: Canvas, frame: _Frame, scenario: Scenario) -> None:
     margin = 12.0
-    left, top = frame.pixel((0.0, map_size[1]))
+    map_size, (first_x, first_y), (last_x, last_y) = scenario.map_size, scenario.map_origin, scenario.map_end
+    left, top = frame.pixel((first_x, last_y))
     size = (frame.scale * map_size[0], frame.scale * map_size[1])
     canvas.rectangle((left - margin, top - margin), (size[0] + 2 * margin, size[1] + 2 * margin), GROUND)
     step = _round_step(max(map_size) / 5)
     right, bottom = left + size[0], top + size[1]
-    for x in np.arange(0.0, map_size[0] + step / 100, step):
+    for x in np.arange(np.ceil(first_x / step) * step, last_x + step / 100, step):
         at = frame.pixel((x, 0.0))[0]
         canvas.line((at, top - margin), (at, bottom + margin), "#ffffff", 1.5)
-        canvas.text(f"{x:g}", (at, bottom + margin + 9), 14, FAINT, align=0.5)
-    for y in np.arange(0.0, map_size[1] + step / 100, step):
+        canvas.text(f"{x:.10g}", (at, bottom + margin + 9), 14, FAINT, align=0.5)
+    for y in np.arange(np.ceil(first_y / step) * step, last_y + step / 100, step):
         at = frame.pixel((0.0, y))[1]
         canvas.line((left - margin, at), (right + margin, at), "#ffffff", 1.5)
-        canvas.text(f"{y:g}", (left - margin - 4, at), 14, FAINT, align=1.0)
+        text = f"{y:.10g}"
+        inside = text_width(text, 14) > left - margin - 4  # there is no room beside the map for long numbers
+        place = (left - margin + 3, at - 8) if inside else (left - margin - 4, at)
+        canvas.text(text, place, 14, FAINT, align=0.0 if inside else 1.0)
 
 
 def _draw_trail(canvas: Canvas, frame: _Frame, mission: Mission, robot: int, now: Point, detail: float) -> None:
@@ -118,7 +126,9 @@ def _draw_tasks(canvas: Canvas, frame: _Frame, mission: Mission, detail: float) 
         else:
             canvas.cross(place, 4.2 * detail, MISSED, 2.2 * detail)
         if numbered:
-            canvas.text(str(task), (place[0] + 6, place[1] - 8), 13, FAINT)
+            name = fitted(scenario.task_name(task), str(task), 13, _LONGEST_NAME)
+            left = place[0] + 6 + text_width(name, 13) > _PANEL_LEFT  # or it would run into the column beside the map
+            canvas.text(name, (place[0] - 6 if left else place[0] + 6, place[1] - 8), 13, FAINT, align=float(left))
 
 
 def _round_step(about: float) -> float:

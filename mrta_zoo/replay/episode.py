@@ -106,13 +106,19 @@ class Place(msgspec.Struct, frozen=True):
     """x, y, deadline and workload of each."""
     robots: list[tuple[float, float, float, float]]
     """x, y, capacity and speed of each."""
+    task_names: list[str]
+    """What people call each: its name, or its number."""
+    robot_names: list[str]
+    """Likewise: its name, or "robot" and its number."""
 
 
 def place_of(scenario: Scenario) -> Place:
     """The scenario for the page."""
     tasks = np.column_stack((scenario.task_xy, scenario.deadline, scenario.workload))
     robots = np.column_stack((scenario.robot_xy, scenario.capacity, scenario.speed))
-    return Place(scenario.name, *scenario.map_size, tasks.tolist(), robots.tolist())
+    task_names = [scenario.task_name(task) for task in range(scenario.num_tasks)]
+    robot_names = [scenario.robot_name(robot) for robot in range(scenario.num_robots)]
+    return Place(scenario.name, *scenario.map_size, tasks.tolist(), robots.tolist(), task_names, robot_names)
 
 
 def episode_of(trace: Trace) -> Episode:

@@ -19,6 +19,7 @@ from mrta_zoo.extras import require
 from mrta_zoo.io.source import write_text
 from mrta_zoo.replay.episode import Episode, Place, episode_of, place_of
 from mrta_zoo.trace import Trace
+from mrta_zoo.verify import COST
 
 MOST_SIDES = 2
 
@@ -28,6 +29,8 @@ class Document(msgspec.Struct, frozen=True):
 
     place: Place
     episodes: list[Episode]
+    cost: str
+    """What the cost of an episode is."""
     colours: dict[str, str | tuple[str, ...]]
 
 
@@ -50,7 +53,7 @@ def replay_page(traces: Sequence[Trace]) -> str:
     require("replay", "a replay page")
     from plotly.offline import get_plotlyjs  # optional, and slow to import
 
-    document = Document(place_of(scenario), [episode_of(trace) for trace in traces], _colours())
+    document = Document(place_of(scenario), [episode_of(trace) for trace in traces], COST, _colours())
     return Template(_part("replay.html")).substitute(
         title=escape(scenario.name),
         style=_part("replay.css"),

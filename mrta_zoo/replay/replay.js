@@ -1,7 +1,7 @@
 "use strict";
 // The page was given the scenario (`place`) and one or two episodes of it. All times come from there; what is worked out
 // here is only what holds at the moment shown. Maps are in map.js, charts in charts.js.
-const { place, episodes, colours } = JSON.parse(document.getElementById("data").textContent);
+const { place, episodes, cost, colours } = JSON.parse(document.getElementById("data").textContent);
 const SIDE_COLOURS = ["#1864ab", "#c2255c"];
 const REASONS = ["to choose from", "taken", "deadline passed", "too late"]; // by rules.MaskReason
 const WHOLE_PLAY = 40; // seconds that an episode takes at speed 1
@@ -171,7 +171,8 @@ function draw() {
 
 document.querySelector("h1").textContent = place.name;
 byId("about").textContent = `${place.tasks.length} tasks, ${place.robots.length} robots, mask rule ` +
-  [...new Set(episodes.map((episode) => episode.mask_rule))].join(" and ");
+  [...new Set(episodes.map((episode) => episode.mask_rule))].join(" and ") +
+  `; cost by ${cost}`;
 document.querySelector("main").className = `${episodes.length > 1 ? "pair" : ""} ${many ? "many" : ""}`;
 const sides = episodes.map((episode, index) => new Side(index, episode));
 const progress = new Progress(byId("progress"), episodes, go);

@@ -5,10 +5,11 @@ from __future__ import annotations
 import base64
 import re
 import xml.etree.ElementTree as ElementTree
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from factories import small_scenario
+from factories import named_scenario, small_scenario
 from IPython.core.formatters import DisplayFormatter
 
 from mrta_zoo import Plan, Scenario, mrta_v0
@@ -49,7 +50,7 @@ def test_a_plan_and_its_score():
     assert "Plan of a &lt; b by mine: 2 tasks taken" in shown(plan)
     assert cells(shown(plan)) == [["0", "2", "0 → 1"], ["1", "0", "-"]]
     html = shown(verify(SCENARIO, plan))  # 10 + 6 / 2 = 13, then sqrt(500) = 22.36 more
-    assert "2 of 2 tasks completed (100.0 %), cost 0.000, distance 32.4, makespan 35.4" in html
+    assert "2 of 2 tasks completed (100.0 %), cost 0.000, distance 32.4, makespan 35.4 (cost by Eq. 1: the sum" in html
     assert cells(html) == [["0", "2 of 2", "35.4", "0 → 1"], ["1", "0 of 0", "-", "-"]]
 
 
@@ -87,3 +88,28 @@ def test_many_are_few_enough():
 def test_nothing_in_a_cell_is_markup():
     assert "<b>&lt;i&gt;</b>" in table("<i>", ["<u>"], [["<script>"]])
     assert "<script>" not in table("<i>", ["<u>"], [["<script>"]])
+
+
+def test_names_are_text():
+    named = named_scenario()
+    html = shown(named)
+    assert "<title>task pump #3 &lt;b&gt;, deadline 50</title>" in html
+    assert "<title>Bob &amp; Co</title>" in html
+    assert cells(shown(verify(named, Plan.of([(0, 1), (2,)])))) == [
+        ["Ann", "2 of 2", "45.0", "valve-A → pump #3 &lt;b&gt;"],
+        ["Bob &amp; Co", "1 of 1", "17.0", "=SUM(A1)"],
+    ]
+
+
+def test_names_from_right_to_left_keep_the_order():
+    named = replace(named_scenario(), task_names=("שער", "ברז", "c", "d", "e"))
+    html = shown(verify(named, Plan.of([(0, 1), (2,)])))
+    assert cells(html)[0][-1] == "\u2068שער\u2069 → \u2068ברז\u2069"  # isolated: or the arrow would point backwards
+
+
+def test_a_map_may_lie_anywhere():
+    moved = Scenario(
+        SCENARIO.task_xy + 5e6, SCENARIO.deadline, SCENARIO.workload, SCENARIO.robot_xy + 5e6, SCENARIO.capacity,
+        map_size=(100, 50), map_origin=(5e6, 5e6),
+    )  # fmt: skip
+    assert '<circle cx="0.0" cy="96.0"' in shown(moved)  # as above

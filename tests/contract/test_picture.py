@@ -6,6 +6,7 @@ import copy
 import pickle
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pygame
@@ -17,7 +18,7 @@ from mrta_zoo import Scenario, mrta_v0
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.mission import Mission
 from mrta_zoo.palette import blend, robot_colour
-from mrta_zoo.render.canvas import as_array
+from mrta_zoo.render.canvas import as_array, fitted, text_width
 from mrta_zoo.render.picture import draw
 from mrta_zoo.render.window import Window
 
@@ -186,3 +187,37 @@ for mode in ("human", "rgb_array"):
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_names_in_pictures(mission):
+    named = replace(mission.scenario, task_names=("A", "B" * 90, "<b>{0}", "弁"), robot_names=("Ann", "Bob"))
+    twin = Mission(named)
+    twin.assign(0)
+    twin.assign(1)
+    one, other = as_array(draw(mission)), as_array(draw(twin))
+    assert (one[150:700, :690] != other[150:700, :690]).any(), "names on the map"
+    assert (one[:, 700:] != other[:, 700:]).any(), "names in the column"
+    assert (one[:, 1036:] == other[:, 1036:]).all(), "nothing runs over the edge"
+    assert (one[:, 690:704] == other[:, 690:704]).all(), "nor into the column"
+
+
+def test_as_much_of_a_name_as_there_is_room_for():
+    assert fitted("valve-A", "3", 17, 100) == "valve-A"
+    short = fitted("valve-A of the north hall", "3", 17, 100)
+    assert short.startswith("valve-A of")
+    assert short.endswith("…")
+    assert text_width(short, 17) <= 100
+    assert fitted("弁", "3", 17, 100) == "3"  # which the font lacks
+    assert fitted("valve-A", "3", 17, 0) == "…"
+
+
+@pytest.mark.parametrize("corner", [(-300.0, -60.0), (512_000.0, 5_403_000.0)])
+def test_a_map_may_lie_anywhere(mission, corner):
+    here, shift = mission.scenario, np.array(corner)
+    moved = Mission(replace(here, task_xy=here.task_xy + shift, robot_xy=here.robot_xy + shift, map_origin=corner))
+    moved.assign(0)
+    moved.assign(1)
+    one, other = (as_array(draw(each))[80:660, 80:660] for each in (mission, moved))
+    assert (one != other).mean() < 0.01  # the grid's numbers are others
+    picture = as_array(draw(moved))
+    assert pixel(picture, 50 - 6 / PIXELS, 80) == rgb(robot_colour(1))

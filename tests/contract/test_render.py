@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from factories import named_scenario
 
 from mrta_zoo import Scenario, mrta_v0
 from mrta_zoo.mission import Mission
@@ -88,3 +91,25 @@ def test_text_of_many():
     _, due, _, robot = describe(mission).splitlines()
     assert due == "due next: " + ", ".join(f"task {task} at {task + 1}.0" for task in range(5, 11)) + ", …"
     assert robot.split()[3:] == ["5", "…", "2", "1", "0", "chooses", "now"]
+
+
+def test_names_in_text():
+    env = mrta_v0.env(scenario=named_scenario(), render_mode="ansi")
+    env.reset()
+    for action in (0, 2, 1):  # Ann's, that of Bob & Co, Ann's at 15
+        env.step(action)
+    assert env.render().splitlines() == [
+        "named   time 45.0   5 tasks: 0 active, 0 assigned, 3 completed, 2 missed   mission over",
+        "robot            x         y  taken  last tasks            doing",
+        "Ann          30.00      0.00      2  valve-A, pump #3 <b>  is retired",
+        "Bob & Co    100.00     30.00      1  =SUM(A1)              is retired",
+    ]
+
+
+def test_text_is_aligned_by_columns_of_the_terminal():
+    scenario = replace(named_scenario(), robot_names=("弁弁弁", "Al"), task_names=())
+    env = mrta_v0.env(scenario=scenario, render_mode="ansi")
+    env.reset()
+    rows = env.render().splitlines()[-2:]
+    assert rows[0].startswith("弁弁弁      0.00 ")
+    assert rows[1].startswith("Al        100.00 ")

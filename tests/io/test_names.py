@@ -105,3 +105,12 @@ def test_a_map_is_put_around_places_where_a_table_has_none(tmp_path: Path) -> No
     assert (read(-20).map_size, read(-20).map_origin) == ((6, 6), (-18, 1))  # x from -17.5 to -12.5
     assert (read(600).map_size, read(600).map_origin) == ((6, 6), (602, 1))
     assert (read(2).map_size, read(2).map_origin) == ((10, 10), (0, 0))  # 10 is no more than twice 6
+
+
+def test_names_that_turn_round_what_follows_are_refused() -> None:
+    with pytest.raises(
+        ScenarioError, match=r"task 1 has the name 'b\\u202e'; expected text without control characters"
+    ):
+        Scenario(
+            NAMED.task_xy, NAMED.deadline, NAMED.workload, NAMED.robot_xy, NAMED.capacity, task_names=("a", "b\u202e")
+        )

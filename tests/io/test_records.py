@@ -29,3 +29,5 @@ def test_nothing_is_no_table(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="there are no rows; expected at least one"):
         write_records([], tmp_path / "records.csv")
     assert not list(tmp_path.iterdir())
+    write_records([], tmp_path / "records.csv", Record)
+    assert (tmp_path / "records.csv").read_text() == "name,tasks,cost,done\n"

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from factories import named_scenario
 
 from mrta_zoo import Plan, Scenario
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.registry import make_solver
 from mrta_zoo.render.whereabouts import whereabouts
-from mrta_zoo.replay.episode import MOST_CANDIDATES, MOST_MASKED, Visit, episode_of
+from mrta_zoo.replay.episode import MOST_CANDIDATES, MOST_MASKED, Visit, episode_of, place_of
 from mrta_zoo.rules import MaskReason
 from mrta_zoo.trace import Choice, Trace
 
@@ -95,3 +96,13 @@ def drawn_at(scenario: Scenario, robot: int, route: list[Visit], time: float, ma
     way = visits[-1].arrive - visits[-1].leave
     share = 1.0 if way == 0 else min(1.0, (time - visits[-1].leave) / way)
     return tuple(places[-2] + share * (places[-1] - places[-2]))
+
+
+def test_names() -> None:
+    named = named_scenario()
+    place = place_of(named)
+    assert (place.task_names, place.robot_names) == (list(named.task_names), list(named.robot_names))
+    assert place_of(SCENARIO).task_names == ["0", "1", "2", "3"]
+    assert place_of(SCENARIO).robot_names == ["robot 0", "robot 1"]
+    second = episode_of(Trace(named, (Choice(0), Choice(2)))).decisions[1]
+    assert [each.note for each in second.candidates if each.task == 0] == ["Ann on it until 15.0"]

@@ -34,6 +34,7 @@ def test_it_holds_the_episodes() -> None:
     document = data_of(replay_page([TRACE, other]))
     assert document.episodes == [episode_of(TRACE), episode_of(other)]
     assert document.place.name == SCENARIO.name
+    assert document.cost == "Eq. 1: the sum of finish / deadline over the tasks missed"
     assert [task[2] for task in document.place.tasks] == SCENARIO.deadline.tolist()
 
 

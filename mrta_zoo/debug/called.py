@@ -1,0 +1,80 @@
+"""What tasks and robots are called where somebody steps through an episode: shown, and typed.
+
+Where they have names, these count. Their numbers count, too, unless one of the names is a number: which of the two was
+meant would be a guess then.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rich.cells import cell_len, set_cell_size
+
+from mrta_zoo.errors import ConfigError
+
+LISTED = 8
+"""Names that a message lists at most."""
+DIGITS = 9
+"""Of a number, at most."""
+
+
+def numbers_count(names: Sequence[str]) -> bool:
+    """Whether numbers are understood besides these names."""
+    return not any(name.isdecimal() for name in names)
+
+
+def called(index: int, names: Sequence[str]) -> str:
+    """Its name, or its number."""
+    return names[index] if names else str(index)
+
+
+def cells(index: int, names: Sequence[str]) -> tuple[str, ...]:
+    """What a row of a table calls a task or robot, under `headings`."""
+    return (*((str(index),) if numbers_count(names) else ()), *((names[index],) if names else ()))
+
+
+def headings(who: str, names: Sequence[str]) -> tuple[str, ...]:
+    """The columns of `cells`: the number, the name or both."""
+    return (who, "name") if names and numbers_count(names) else (who,)
+
+
+def find(text: str, names: Sequence[str]) -> int | None:
+    """The task or robot that a text means; None if it is neither a name nor a whole number."""
+    if text in names:
+        return names.index(text)
+    number = text.isdecimal() and text.isascii() and len(text) <= DIGITS
+    return int(text) if number and numbers_count(names) else None
+
+
+def found(text: str, who: str, names: Sequence[str]) -> int:
+    """The task or robot that a text means.
+
+    Args:
+        text: what was typed.
+        who: "task" or "robot", for the message.
+        names: of all of them, empty if they have none.
+
+    Raises:
+        ConfigError: if it is neither a name nor a whole number that counts.
+    """
+    index = find(text, names)
+    if index is not None:
+        return index
+    if not names:
+        raise ConfigError(f"{who} is {text!r}; expected a whole number >= 0")
+    number = ", or a number" if numbers_count(names) else ""
+    listed = ", ".join(names[:LISTED]) + (", …" if len(names) > LISTED else "")
+    raise ConfigError(f"there is no {who} {text!r}; expected a name{number}; the {who}s are {listed}")
+
+
+def shortened(name: str, most: int) -> str:
+    """A name in so many columns of a terminal."""
+    return name if cell_len(name) <= most else set_cell_size(name, most - 1).rstrip() + "…"
+
+
+def without_comment(line: str, names: Sequence[str]) -> str:
+    """A line of a script up to a ``#`` that is no part of a name."""
+    hidden = line
+    for name in sorted((name for name in names if "#" in name), key=len, reverse=True):
+        hidden = hidden.replace(name, "\0" * len(name))
+    return line[: hidden.index("#")] if "#" in hidden else line
