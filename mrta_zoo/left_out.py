@@ -5,11 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-import numpy.typing as npt
-
-from mrta_zoo.mission import Mission
 from mrta_zoo.plan import Plan
+from mrta_zoo.scales import in_time
 from mrta_zoo.scenario import Scenario
 
 Reason = Literal["out of reach", "others were worth more"]
@@ -40,17 +37,10 @@ def left_out(scenario: Scenario, plan: Plan) -> tuple[LeftOut, ...]:
         scenario: what was planned.
         plan: its plan, which must fit it, see `verify.verify`.
     """
-    within = within_reach(scenario)
+    within_reach = in_time(scenario).any(axis=0)
     taken = {task for route in plan.routes for task in route}
     return tuple(
-        LeftOut(task, "others were worth more" if within[task] else "out of reach")
+        LeftOut(task, "others were worth more" if within_reach[task] else "out of reach")
         for task in range(scenario.num_tasks)
         if task not in taken
     )
-
-
-def within_reach(scenario: Scenario) -> npt.NDArray[np.bool_]:
-    """(N,) whether some robot could finish each task by its deadline if it went straight there at the start."""
-    start = Mission(scenario, "feasible")
-    reach: npt.NDArray[np.bool_] = np.any([start.mask(robot) for robot in range(scenario.num_robots)], axis=0)
-    return reach

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from mrta_zoo.rules import finish_time, may_choose, travel_time
 from mrta_zoo.scenario import FloatArray, Scenario
 
 BoolArray = npt.NDArray[np.bool_]
@@ -113,10 +114,11 @@ def frame_of(scenario: Scenario, possible: BoolArray | None = None) -> tuple[Flo
 
 
 def in_time(scenario: Scenario) -> BoolArray:
-    """(M, N) what each robot could finish by its deadline, if it went there first."""
-    x, y = (scenario.task_xy[:, axis] - scenario.robot_xy[:, axis, None] for axis in (0, 1))
-    finish = np.hypot(x, y) / scenario.speed[:, None] + scenario.workload / scenario.capacity[:, None]
-    return np.asarray(finish <= scenario.deadline)
+    """(M, N) what each robot could finish by its deadline if it went straight there at the start."""
+    dx, dy = (scenario.task_xy[:, axis] - scenario.robot_xy[:, axis, None] for axis in (0, 1))
+    travel = travel_time(dx, dy, scenario.speed[:, None], np.sqrt)
+    finish = finish_time(0.0, travel, scenario.workload / scenario.capacity[:, None])
+    return np.asarray(may_choose("feasible", finish, 0.0, scenario.deadline))
 
 
 def slack_time(scenario: Scenario, crossing: float) -> float:

@@ -28,8 +28,8 @@ LAYERS = (
             "mrta_zoo.stand_ins",
         ),
     ),
-    ("the problem", ("mrta_zoo", "mrta_zoo.scenario", "mrta_zoo.scales", "mrta_zoo.plan")),
-    ("its rules", ("mrta_zoo.rules",)),
+    ("the problem", ("mrta_zoo", "mrta_zoo.scenario", "mrta_zoo.plan")),
+    ("its rules, and by what it is measured", ("mrta_zoo.rules", "mrta_zoo.scales")),
     (
         "dynamics, scores and data",
         (
