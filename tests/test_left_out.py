@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 from factories import hopeless_scenario, named_scenario, small_scenario
 
-from mrta_zoo.left_out import LeftOut, left_out, within_reach
+from mrta_zoo.left_out import LeftOut, left_out
 from mrta_zoo.plan import Plan
+from mrta_zoo.scales import in_time
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
 
@@ -30,7 +31,7 @@ def test_reasons() -> None:
 def test_just_in_time_is_within_reach() -> None:
     for deadline, reached in ((15.0, True), (14.999, False)):  # 10 of way, 5 of work
         scenario = Scenario([[10, 0]], [deadline], [5], [[0, 0]], [1])  # type: ignore[arg-type,list-item]
-        assert within_reach(scenario).tolist() == [reached]
+        assert in_time(scenario).tolist() == [[reached]]
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -41,6 +42,6 @@ def test_reach_is_what_the_verifier_finds(seed: int) -> None:
         routes = [[task] if each == robot else [] for each in range(3)]
         return verify(scenario, Plan.of(routes)).completed
 
-    found = [any(alone(robot, task) for robot in range(3)) for task in range(30)]
-    assert within_reach(scenario).tolist() == found
-    assert 0 < sum(found) < 30
+    found = [[bool(alone(robot, task)) for task in range(30)] for robot in range(3)]
+    assert in_time(scenario).tolist() == found
+    assert 0 < sum(map(any, zip(*found, strict=True))) < 30
