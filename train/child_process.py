@@ -7,10 +7,11 @@ import multiprocessing.connection
 import os
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
+from typing import Any
 
 from mrta_zoo.errors import ConfigError
 
@@ -20,16 +21,21 @@ DIED = (
 
 
 @contextmanager
-def pool_of(workers: int) -> Iterator[ProcessPoolExecutor]:
+def pool_of(
+    workers: int, prepare: Callable[..., None] | None = None, arguments: tuple[Any, ...] = ()
+) -> Iterator[ProcessPoolExecutor]:
     """A pool whose processes end at once where the block is left by an exception, be it Ctrl-C.
 
     Args:
         workers: number of processes.
+        prepare: called in each before its first job.
+        arguments: what it is called with.
 
     Raises:
         ConfigError: if one of the processes dies.
     """
-    with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), obey_parent) as pool:
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(workers, context, _begin, (prepare, arguments)) as pool:
         try:
             yield pool
         except BaseException as error:
@@ -39,6 +45,12 @@ def pool_of(workers: int) -> Iterator[ProcessPoolExecutor]:
             if isinstance(error, BrokenProcessPool):
                 raise ConfigError(DIED) from None
             raise
+
+
+def _begin(prepare: Callable[..., None] | None, arguments: tuple[Any, ...]) -> None:
+    obey_parent()
+    if prepare is not None:
+        prepare(*arguments)
 
 
 def obey_parent() -> None:

@@ -6,7 +6,7 @@ import multiprocessing
 import queue
 import sys
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from typing import Any
 
 import torch
@@ -14,7 +14,7 @@ from rich.console import Console
 
 from mrta_zoo.eval.console import progress_bar
 from mrta_zoo.eval.training.job import Job, perform
-from mrta_zoo.train.child_process import obey_parent
+from mrta_zoo.train.child_process import pool_of
 
 Report = Callable[[Job, float], None]
 """Is told which share of a job is done; 1 only once its rows are there."""
@@ -23,11 +23,6 @@ POLL = 0.2
 """Seconds between two looks at what the processes have to tell."""
 
 _told: Any = None
-_stop: Any = None
-
-
-class _StoppedError(Exception):
-    """The study ends early: another run failed, or the user interrupted it."""
 
 
 def train_all(jobs: Sequence[Job], missing: Sequence[Job], workers: int) -> None:
@@ -51,25 +46,19 @@ def train_all(jobs: Sequence[Job], missing: Sequence[Job], workers: int) -> None
 def perform_all(jobs: Sequence[Job], workers: int, report: Report) -> None:
     """Do all jobs, at most `workers` at a time; with one, in this process.
 
-    Results are the same for any number of workers. Where this process is interrupted, or a job fails, the others stop
-    after their update; where it is killed, they end with it.
+    Results are the same for any number of workers. Where this process is interrupted or killed, or a job fails, the
+    others end at once; they go on from their last checkpoints.
 
     Raises:
-        MrtaError: if a job fails.
+        MrtaError: if a job fails, or a process dies.
     """
     if workers == 1:
         for job in jobs:
             _alone(job, report)
         return
-    context = multiprocessing.get_context("spawn")
-    told, stop = context.Queue(), context.Event()
-    with ProcessPoolExecutor(workers, context, initializer=_prepare, initargs=(told, stop)) as pool:
-        try:
-            _watch(jobs, {pool.submit(_perform, index, job): job for index, job in enumerate(jobs)}, told, report)
-        except BaseException:
-            stop.set()
-            pool.shutdown(wait=True, cancel_futures=True)
-            raise
+    told = multiprocessing.get_context("spawn").Queue()
+    with pool_of(workers, _prepare, (told,)) as pool:
+        _watch(jobs, {pool.submit(_perform, index, job): job for index, job in enumerate(jobs)}, told, report)
 
 
 def _alone(job: Job, report: Report) -> None:
@@ -92,18 +81,12 @@ def _watch(jobs: Sequence[Job], running: dict[Future[None], Job], told: Any, rep
             report(job, 1.0)
 
 
-def _prepare(told: Any, stop: Any) -> None:
+def _prepare(told: Any) -> None:
     """Make a process ready, before its first job."""
-    global _told, _stop
-    _told, _stop = told, stop
+    global _told
+    _told = told
     torch.set_num_threads(1)
-    obey_parent()
 
 
 def _perform(index: int, job: Job) -> None:
-    def tell(share: float) -> None:
-        if _stop.is_set():
-            raise _StoppedError
-        _told.put((index, share))
-
-    perform(job, tell)
+    perform(job, lambda share: _told.put((index, share)))

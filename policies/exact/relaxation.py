@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from mrta_zoo.policies.exact.task_sets import ROUNDING, first_finish
+from mrta_zoo.policies.interruption import interruptible
 from mrta_zoo.rules import travel_time
 from mrta_zoo.scenario import FloatArray, Scenario
 
@@ -88,10 +90,11 @@ def _dual_bound(shares: list[FloatArray], possible: npt.NDArray[np.bool_], secon
     once = hstack([eye_array(num_tasks)] * len(shares))
     matrix = vstack([block_diag(shares), once]).tocsr()[:, possible.ravel()]
     limits = np.ones(matrix.shape[0])
-    found = linprog(
-        -np.ones(matrix.shape[1]), A_ub=matrix, b_ub=limits, bounds=(0, 1), method="highs",
+    program = partial(
+        linprog, -np.ones(matrix.shape[1]), A_ub=matrix, b_ub=limits, bounds=(0, 1), method="highs",
         options={"time_limit": seconds},
     )  # fmt: skip
+    found = interruptible(program)
     if found.status != 0:
         return int(num_tasks)
     prices = np.maximum(0.0, -found.ineqlin.marginals)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from mrta_zoo.policies.exact.task_sets import IntArray
+from mrta_zoo.policies.interruption import interruptible
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,13 +64,15 @@ def choose_sets(teams: list[Team], num_tasks: int, *, disjoint: bool, seconds: f
     shape = (num_tasks + len(teams), num_tasks + num_sets)
     most = [0.0 if disjoint else math.inf] * num_tasks + [float(len(team.robots)) for team in teams]
     is_set = np.arange(shape[1]) >= num_tasks
-    found = milp(
+    program = partial(
+        milp,
         np.where(is_set, 0.0, -1.0),
         integrality=is_set.astype(int),  # whether a task is done follows
         bounds=Bounds(0, 1),
         constraints=LinearConstraint(csr_array((values, (rows, columns)), shape=shape), 0.0, most),
         options={"time_limit": seconds, "mip_rel_gap": 0.0},
     )
+    found = interruptible(program)
     bound = num_tasks
     if found.mip_dual_bound is not None and math.isfinite(found.mip_dual_bound):
         bound = min(bound, math.floor(-found.mip_dual_bound + 1e-4))

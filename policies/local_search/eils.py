@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import math
 import time
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
+from threading import Event
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +24,7 @@ from numba import njit
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
+from mrta_zoo.policies.interruption import interruptible, side_by_side
 from mrta_zoo.policies.local_search.insertion import fill, fill_by_deadline
 from mrta_zoo.policies.local_search.problem import Problem, make_problem, smallest_scenario
 from mrta_zoo.policies.local_search.tours import Tours, copy_tour, copy_tours, empty_tours, plan_of, remove, tours_of
@@ -98,34 +99,31 @@ class EilsSolver:
         self._threads = 1 if budget is None else threads
         compile_once()
 
-    def solve(self, scenario: Scenario) -> Plan:
-        """A plan for `scenario`."""
-        return self.improve(scenario, Plan(((),) * scenario.num_robots), "eils")
+    def solve(self, scenario: Scenario, stop: Event | None = None) -> Plan:
+        """A plan for `scenario`; the search ends early once another thread sets `stop`."""
+        return self.improve(scenario, Plan(((),) * scenario.num_robots), "eils", stop)
 
-    def improve(self, scenario: Scenario, plan: Plan, method: str) -> Plan:
+    def improve(self, scenario: Scenario, plan: Plan, method: str, stop: Event | None = None) -> Plan:
         """A plan that completes at least as many tasks as `plan`, with no late visits unless it is the same.
 
         Args:
             scenario: the mission.
             plan: where the search begins.
             method: what the plan is signed with.
+            stop: ends the search early once another thread sets it.
 
         Raises:
             PlanError: if `plan` does not fit `scenario`.
         """
         begun = time.perf_counter()
-        problem = make_problem(scenario)
+        problem, stopped = make_problem(scenario), stop or Event()
 
         def search(number: int) -> Tours:
             rng = np.random.default_rng((self._seed, number) if number else self._seed)
-            return _search(problem, tours_of(problem, scenario, plan), rng, begun, self._budget, self._config)
+            return _search(problem, tours_of(problem, scenario, plan), rng, begun, self._budget, self._config, stopped)
 
-        if self._threads == 1:
-            best = search(0)
-        else:
-            with ThreadPoolExecutor(self._threads) as pool:
-                found = list(pool.map(search, range(self._threads)))
-            best = max(found, key=worth)
+        found = side_by_side([partial(search, number) for number in range(self._threads)], stopped.set)
+        best = max(found, key=worth)
         if verify(scenario, plan).completed > best.size.sum():  # one late visit, dropped, made another late by rounding
             return Plan(plan.routes, scenario.name, method)
         return plan_of(best, scenario, method)
@@ -139,12 +137,22 @@ def worth(tours: Tours) -> tuple[int, float]:
 @cache
 def compile_once() -> None:
     """Compile the search, so that no plan has to wait for it."""
+    interruptible(_compile)
+
+
+def _compile() -> None:
     problem = make_problem(smallest_scenario())
-    worth(_search(problem, empty_tours(problem), np.random.default_rng(0), 0.0, None, EilsConfig()))
+    worth(_search(problem, empty_tours(problem), np.random.default_rng(0), 0.0, None, EilsConfig(), Event()))
 
 
 def _search(
-    problem: Problem, tours: Tours, rng: np.random.Generator, begun: float, budget: float | None, config: EilsConfig
+    problem: Problem,
+    tours: Tours,
+    rng: np.random.Generator,
+    begun: float,
+    budget: float | None,
+    config: EilsConfig,
+    stopped: Event,
 ) -> Tours:
     """The best tours that come of some; these are changed."""
     shift, weight = np.empty(problem.work.shape), np.ones(len(problem.deadline))
@@ -158,7 +166,7 @@ def _search(
     visit_time = total_time(tours) / visits
     iterations = max(config.iterations_a_task * len(problem.deadline), config.least_iterations)
     done, share = 0, 0.0
-    while share < 1.0:
+    while share < 1.0 and not stopped.is_set():
         if budget is None:
             chunk = min(CHUNK, iterations - done)
         elif share == 0.0:

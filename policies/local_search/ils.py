@@ -9,13 +9,14 @@ has the score 1. Nothing in it is drawn at random.
 from __future__ import annotations
 
 import time
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import numpy.typing as npt
 from numba import njit
 
 from mrta_zoo.plan import Plan
+from mrta_zoo.policies.interruption import interruptible
 from mrta_zoo.policies.local_search.insertion import fill
 from mrta_zoo.policies.local_search.problem import Problem, make_problem, smallest_scenario
 from mrta_zoo.policies.local_search.tours import Tours, copy_tours, empty_tours, plan_of, remove
@@ -50,7 +51,7 @@ class IlsSolver:
 @cache
 def compile_once() -> None:
     """Compile the search, so that no plan has to wait for it."""
-    _solve(smallest_scenario(), None)
+    interruptible(partial(_solve, smallest_scenario(), None))
 
 
 def _solve(scenario: Scenario, budget: float | None) -> Plan:

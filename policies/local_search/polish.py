@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import time
-from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from threading import Event
 
 from mrta_zoo.plan import Plan
+from mrta_zoo.policies.interruption import side_by_side
 from mrta_zoo.policies.local_search.eils import EilsSolver
 from mrta_zoo.policies.protocol import Hurried, NeedsWarmUp, Solver
 from mrta_zoo.scenario import Scenario
@@ -45,16 +47,20 @@ class PolishedSolver:
         if self._threads == 1:
             return self._plan_and_search(scenario, self._budget, self._seed)
         others = EilsSolver(self._seed, self._budget, threads=self._threads - 1)
-        with ThreadPoolExecutor(1) as pool:
-            found = pool.submit(others.solve, scenario)
-            plan = self._plan_and_search(scenario, self._budget, self._seed + 1)
-            other = found.result()
+        stop = Event()
+        plan, other = side_by_side(
+            [
+                partial(self._plan_and_search, scenario, self._budget, self._seed + 1, stop),
+                partial(others.solve, scenario, stop),
+            ],
+            stop.set,
+        )
         mine, theirs = (verify(scenario, each) for each in (plan, other))
         if (theirs.completed, -theirs.cost) > (mine.completed, -mine.cost):
             return Plan(other.routes, scenario.name, plan.method)
         return plan
 
-    def _plan_and_search(self, scenario: Scenario, budget: float, seed: int) -> Plan:
+    def _plan_and_search(self, scenario: Scenario, budget: float, seed: int, stop: Event | None = None) -> Plan:
         begun = time.perf_counter()
         plan: Plan | None
         if not isinstance(self._solver, Hurried):
@@ -68,7 +74,7 @@ class PolishedSolver:
             if plan is None:
                 plan = Plan(((),) * scenario.num_robots, method=self._solver.name)
         left = max(LEAST_BUDGET, budget - (time.perf_counter() - begun))
-        return EilsSolver(seed, left).improve(scenario, plan, _signed(plan))
+        return EilsSolver(seed, left).improve(scenario, plan, _signed(plan), stop)
 
     def _learn(self, scenario: Scenario, seconds: float, plan: Plan | None) -> None:
         """Remember how long the method takes; twice as long as this, as a guess, where it did not finish."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from threading import Event
 from types import SimpleNamespace
 
 import numpy as np
@@ -56,9 +57,9 @@ def spied(monkeypatch: pytest.MonkeyPatch, slow: Slow) -> list[tuple[float | Non
             super().__init__(seed, None)
             self._asked = budget
 
-        def improve(self, scenario: Scenario, plan: Plan, method: str) -> Plan:
+        def improve(self, scenario: Scenario, plan: Plan, method: str, stop: Event | None = None) -> Plan:
             found.append((self._asked, sum(map(len, plan.routes))))
-            return super().improve(scenario, plan, method)
+            return super().improve(scenario, plan, method, stop)
 
     monkeypatch.setattr("mrta_zoo.policies.local_search.polish.EilsSolver", Spy)
     monkeypatch.setattr("mrta_zoo.policies.local_search.polish.time", SimpleNamespace(perf_counter=slow.clock))
