@@ -20,11 +20,11 @@ from threading import Event
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.interruption import interruptible, side_by_side
+from mrta_zoo.policies.local_search.compiled import compiled
 from mrta_zoo.policies.local_search.insertion import fill, fill_by_deadline
 from mrta_zoo.policies.local_search.problem import Problem, make_problem, smallest_scenario
 from mrta_zoo.policies.local_search.tours import Tours, copy_tour, copy_tours, empty_tours, plan_of, remove, tours_of
@@ -183,7 +183,7 @@ def _search(
     return best
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def anneal(
     problem: Problem,
     tours: Tours,
@@ -249,7 +249,7 @@ def anneal(
             trial.robot[:] = tours.robot
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def remove_strings(
     problem: Problem, tours: Tours, changed: npt.NDArray[np.bool_], removals: float, rng: np.random.Generator
 ) -> None:
@@ -281,7 +281,7 @@ def remove_strings(
             break
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def total_time(tours: Tours) -> float:
     """The time until each robot is through with its tour, summed over the robots."""
     total = 0.0

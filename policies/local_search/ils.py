@@ -13,10 +13,10 @@ from functools import cache, partial
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.interruption import interruptible
+from mrta_zoo.policies.local_search.compiled import compiled
 from mrta_zoo.policies.local_search.insertion import fill
 from mrta_zoo.policies.local_search.problem import Problem, make_problem, smallest_scenario
 from mrta_zoo.policies.local_search.tours import Tours, copy_tours, empty_tours, plan_of, remove
@@ -67,7 +67,7 @@ def _solve(scenario: Scenario, budget: float | None) -> Plan:
     return plan_of(best, scenario, "ils")
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def search(
     problem: Problem, tours: Tours, best: Tours, shift: FloatArray, state: npt.NDArray[np.int64], rounds: int
 ) -> None:
@@ -96,7 +96,7 @@ def search(
             state[COUNT] = 1
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def shake(problem: Problem, tours: Tours, start: int, count: int) -> None:
     """In every tour remove `count` consecutive visits from position `start` on, going on at its beginning."""
     for robot in range(len(tours.size)):

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
+from mrta_zoo.policies.local_search.compiled import compiled
 from mrta_zoo.policies.local_search.problem import TOLERANCE, Problem
 from mrta_zoo.policies.local_search.tours import Tours, insert
 from mrta_zoo.scenario import FloatArray
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def fill(
     problem: Problem, tours: Tours, shift: FloatArray, open_tours: npt.NDArray[np.bool_], weight: FloatArray
 ) -> None:
@@ -72,7 +72,7 @@ def fill(
                     best_task[other], best_value[other] = _choose(shift, other, weight, free, unvisited)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def fill_by_deadline(
     problem: Problem, tours: Tours, open_tours: npt.NDArray[np.bool_], blink: float, rng: np.random.Generator
 ) -> None:
@@ -101,7 +101,7 @@ def fill_by_deadline(
             insert(problem, tours, task, winner, place)  # or not, if the look-up was wrong by a rounding error
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _forget(free: npt.NDArray[np.int64], unvisited: int, task: int) -> int:
     """Take `task` from the first `unvisited` of `free`, and give how many are left."""
     position = 0
@@ -112,7 +112,7 @@ def _forget(free: npt.NDArray[np.int64], unvisited: int, task: int) -> int:
     return unvisited - 1
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _choose(
     shift: FloatArray, robot: int, weight: FloatArray, free: npt.NDArray[np.int64], unvisited: int
 ) -> tuple[int, float]:
@@ -126,7 +126,7 @@ def _choose(
     return chosen, least
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _look_up_legs(
     problem: Problem,
     tours: Tours,
@@ -178,7 +178,7 @@ def _look_up_legs(
             place[robot, task], shift[robot, task] = first + 1, least
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _best_position(problem: Problem, tours: Tours, task: int, robot: int) -> tuple[int, float]:
     """The position in a tour at which a task has the least Shift, and that; inf if it fits nowhere."""
     between = problem.distance

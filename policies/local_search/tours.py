@@ -6,15 +6,15 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numba import njit
 
 from mrta_zoo import rules
 from mrta_zoo.plan import Plan
+from mrta_zoo.policies.local_search.compiled import compiled
 from mrta_zoo.policies.local_search.problem import Problem
 from mrta_zoo.scenario import FloatArray, Scenario
 from mrta_zoo.verify import verify
 
-finish_time = njit(cache=True, nogil=True)(rules.finish_time)
+finish_time = compiled(rules.finish_time)
 
 
 class Tours(NamedTuple):
@@ -70,7 +70,7 @@ def plan_of(tours: Tours, scenario: Scenario, method: str) -> Plan:
     return Plan.of(routes, scenario.name, method)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def copy_tour(source: Tours, target: Tours, robot: int) -> None:
     """Make one robot's tour in `target` what it is in `source`; `target.robot` is left to the caller."""
     size = source.size[robot]
@@ -82,7 +82,7 @@ def copy_tour(source: Tours, target: Tours, robot: int) -> None:
         target.max_shift[robot, position] = source.max_shift[robot, position]
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def copy_tours(source: Tours, target: Tours) -> None:
     """Make `target` what `source` is."""
     for robot in range(len(source.size)):
@@ -90,7 +90,7 @@ def copy_tours(source: Tours, target: Tours) -> None:
     target.robot[:] = source.robot
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def insert(problem: Problem, tours: Tours, task: int, robot: int, position: int) -> bool:
     """Insert `task` unless something would come late, judged exactly as the rules do; whether it was inserted."""
     size = tours.size[robot]
@@ -105,7 +105,7 @@ def insert(problem: Problem, tours: Tours, task: int, robot: int, position: int)
     return False
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def remove(problem: Problem, tours: Tours, robot: int, position: int, count: int) -> None:
     """Remove `count` consecutive visits from `position` on, and any that rounding makes late without the detour."""
     while count > 0:
@@ -119,7 +119,7 @@ def remove(problem: Problem, tours: Tours, robot: int, position: int, count: int
         position, count = late, int(late >= 0)
 
 
-@njit(cache=True, nogil=True)
+@compiled
 def _retime(problem: Problem, tours: Tours, robot: int, start: int) -> int:
     """Recompute the times of a tour from position `start` on; the first visit that is late, or -1."""
     size = tours.size[robot]

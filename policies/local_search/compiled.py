@@ -1,0 +1,66 @@
+"""Functions compiled by Numba, and kept on disk for the next process where that can be."""
+
+from __future__ import annotations
+
+import logging
+import multiprocessing
+from collections.abc import Callable
+from functools import cache
+from typing import Any, TypeVar
+
+from numba import njit
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+NOT_KEPT = (
+    "compiled methods are compiled anew in each process, some 20 seconds, as what comes of it cannot be kept; set "
+    "NUMBA_CACHE_DIR to a folder that can be written to and has room"
+)
+
+
+def compiled(function: Function) -> Function:
+    """`function`, compiled at its first call. It lets other threads go on.
+
+    What cannot be kept on disk (a read-only installation without a home, a full disk) or is damaged there is compiled
+    anew; the first is logged as a warning, once, which by default goes to standard error.
+    """
+    made: Any = njit(nogil=True)(function)
+    try:
+        made.enable_caching()
+        made._cache = _OptionalCache(made._cache)
+    except (RuntimeError, OSError):  # the first is Numba's if there is no folder
+        _say_not_kept()
+    result: Function = made
+    return result
+
+
+class _OptionalCache:
+    """Numba's cache on disk of one function, which is compiled all the same if it fails."""
+
+    def __init__(self, kept: Any) -> None:
+        self._kept = kept
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._kept, name)
+
+    def load_overload(self, *arguments: Any) -> Any:
+        try:
+            return self._kept.load_overload(*arguments)
+        except Exception:  # whatever unpickling damaged files raises
+            return None
+
+    def save_overload(self, *arguments: Any) -> None:
+        try:
+            try:
+                self._kept.save_overload(*arguments)
+            except Exception:  # a damaged index, perhaps
+                self._kept.flush()
+                self._kept.save_overload(*arguments)
+        except OSError:
+            _say_not_kept()
+
+
+@cache
+def _say_not_kept() -> None:
+    if multiprocessing.parent_process() is None:  # which says it for all
+        logging.getLogger(__name__).warning(NOT_KEPT)
