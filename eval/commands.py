@@ -20,12 +20,12 @@ from mrta_zoo.eval.runner import evaluate, solve_and_score
 from mrta_zoo.eval.schedule import missed, proven, schedule_table, totals
 from mrta_zoo.eval.solved_files import write_schedule, write_solved
 from mrta_zoo.eval.table import summary_tables
-from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import Case, read_cases, read_scenario
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.records import records_text, write_records
 from mrta_zoo.io.taptc import find_agent_file
 from mrta_zoo.paths import suffix_of
+from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.policies.default_method import BEST_FIRST, default_method
 from mrta_zoo.policies.options import Decode
 from mrta_zoo.policies.policy_files import info_file, weights_file

@@ -22,11 +22,11 @@ from mrta_zoo.eval.console import preparing, results_console
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.plan_files import read_any_plan
-from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import read_scenario
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.strict_json import write_document
 from mrta_zoo.paths import suffix_of
+from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.policies.registry import method_names
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import COST

@@ -19,11 +19,11 @@ from mrta_zoo.eval.runner import solve_and_score
 from mrta_zoo.eval.schedule import totals
 from mrta_zoo.eval.solved_files import write_solved
 from mrta_zoo.eval.table import summary_tables
-from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.extras import require
 from mrta_zoo.io.records import write_records
 from mrta_zoo.mission import Mission
 from mrta_zoo.paths import make_folder
+from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.policies.registry import load_learned, make_solver
 from mrta_zoo.scenario import Scenario

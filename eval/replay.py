@@ -16,10 +16,10 @@ from mrta_zoo.eval.console import preparing, results_console
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.plan_files import check_name
-from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import read_plan, read_scenario, read_trace
 from mrta_zoo.io.json_format import json_kind
 from mrta_zoo.io.outputs import Outputs
+from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.replay.page import MOST_SIDES, write_replay
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import Trace

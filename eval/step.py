@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import threading
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Annotated
@@ -25,11 +26,11 @@ from mrta_zoo.eval.console import preparing
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import optional, parse
 from mrta_zoo.eval.plan_files import read_any_plan
-from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.io import read_scenario, read_trace
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.source import decode, read_text
+from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.policies.registry import method_names
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import Trace
@@ -87,7 +88,7 @@ def step_command(argv: Sequence[str]) -> None:
     if command.session:
         check_destination(command.session)
         check_distinct({"--session": command.session}, {"the scenario": command.scenario})
-    with cpu_threads(command.planning.threads), hangups_raised():
+    with cpu_threads(command.planning.threads), hangups_raised() if command.session else nullcontext():
         session = _begin(command)
         try:
             if script is None:
@@ -108,17 +109,25 @@ def step_command(argv: Sequence[str]) -> None:
 
 @contextmanager
 def hangups_raised() -> Iterator[None]:
-    """A lost connection or a request to end raises SystemExit meanwhile, so that what is to be saved is saved."""
+    """A lost connection or a request to end raises SystemExit meanwhile, so that what is to be saved is saved.
+
+    Signals that somebody else handles, or ignores, are left to them, and in a thread, which cannot handle any, all are.
+    """
 
     def end(number: int, _: object) -> None:
         sys.exit(128 + number)
 
-    before = {number: signal.signal(number, end) for number in (signal.SIGHUP, signal.SIGTERM)}
+    numbers = [getattr(signal, name) for name in ("SIGHUP", "SIGTERM") if hasattr(signal, name)]
+    mine = [number for number in numbers if signal.getsignal(number) == signal.SIG_DFL]
+    if threading.current_thread() is not threading.main_thread():
+        mine = []
+    for number in mine:
+        signal.signal(number, end)
     try:
         yield
     finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        for number in mine:
+            signal.signal(number, signal.SIG_DFL)
 
 
 def _begin(command: Step) -> Session:

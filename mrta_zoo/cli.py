@@ -8,7 +8,9 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from io import TextIOWrapper
 
 from mrta_zoo import __version__
 from mrta_zoo.errors import ConfigError, MrtaError
@@ -121,16 +123,19 @@ COMMANDS: dict[str, tuple[str, Command]] = {
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit code.
+    """Run the command line and return its exit code. Streams, signals and torch's threads are left as they were.
 
     Args:
-        argv: the arguments; by default those of the process.
+        argv: the arguments; by default those of the process, which then ends, so that standard output may be given up.
     """
-    arguments = list(sys.argv[1:] if argv is None else argv)
-    _prepare_streams()
+    with _fit_streams():
+        return _run(sys.argv[1:] if argv is None else argv, ends=argv is None)
+
+
+def _run(arguments: Sequence[str], ends: bool) -> int:
     try:
         try:
-            return _dispatch(arguments)
+            return _dispatch(list(arguments))
         finally:
             sys.stdout.flush()  # a full disk, or a reader that has gone away, shows here, not at exit
     except MrtaError as error:
@@ -139,10 +144,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         print("interrupted", file=sys.stderr)
         return INTERRUPTED
     except BrokenPipeError:  # the reader, such as `head`, has seen enough
-        _silence_stdout()
+        if ends:
+            _silence_stdout()
         return BROKEN_PIPE
     except OSError as error:
-        _drop_stuck_output()
+        if ends:
+            _drop_stuck_output()
         where = "the output" if error.filename is None else os.fsdecode(error.filename)
         return _complain(f"{where}: {(error.strerror or str(error)).lower()}")
     except MemoryError:
@@ -201,14 +208,23 @@ def _help() -> str:
     )
 
 
-def _prepare_streams() -> None:
-    """Make standard output and error fit for any text, also where the shell has closed them."""
-    for name in ("stdout", "stderr"):
-        if getattr(sys, name) is None:  # by >&-
-            setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115  (open until exit)
-        stream = getattr(sys, name)
-        if hasattr(stream, "reconfigure"):  # a name that the terminal's encoding lacks must not end in a traceback
-            stream.reconfigure(errors="replace")
+@contextmanager
+def _fit_streams() -> Iterator[None]:
+    """Standard output and error are fit for any text meanwhile, also where the shell has closed them."""
+    with ExitStack() as restored:
+        for name in ("stdout", "stderr"):
+            if getattr(sys, name) is None:  # by >&-
+                setattr(sys, name, restored.enter_context(open(os.devnull, "w", encoding="utf-8")))
+                restored.callback(setattr, sys, name, None)
+            elif hasattr(stream := getattr(sys, name), "reconfigure"):
+                restored.callback(_reconfigure, stream, stream.errors)
+                _reconfigure(stream, "replace")  # what the terminal's encoding lacks must not end in a traceback
+        yield
+
+
+def _reconfigure(stream: TextIOWrapper, errors: str | None) -> None:
+    with suppress(OSError):  # it writes what is left to write, which may have failed before
+        stream.reconfigure(errors=errors)
 
 
 def _complain(sentence: str) -> int:

@@ -21,6 +21,7 @@ from mrta_zoo.observation import MISSION_FEATURES, TASK_FEATURES, Observation
 from mrta_zoo.paths import check_no_url, suffix_of
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.decoding import Decoding, best_plan
 from mrta_zoo.policies.options import Decode, SolverOptions
 from mrta_zoo.policies.policy_files import SUFFIX, weights_file
@@ -114,6 +115,7 @@ class NeuralPolicy:
         """The task to take. `agent` is not needed: the observation says whose it is."""
         return self.decide(observation).action
 
+    @few_threads()
     @torch.no_grad()
     def decide(self, observation: Observation) -> Decision:
         """The task to take, with probabilities. The encoder runs only when the tasks differ from the last call's.
@@ -195,6 +197,7 @@ class NeuralPolicy:
         except OutOfTimeError:
             return None
 
+    @few_threads()
     def _plan(
         self,
         scenario: Scenario,
@@ -217,6 +220,7 @@ class NeuralPolicy:
         )
         return Plan(best_plan(self.network, scenario, how).routes, scenario.name, self.name)
 
+    @few_threads()
     def solve_batch(self, scenarios: Sequence[Scenario], mask_rule: MaskRule | None = None) -> list[Plan]:
         """Greedy plans for many missions at once, faster than one by one."""
         rule: MaskRule = mask_rule or self.info.mask_rule

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import os
 import signal
@@ -229,6 +230,25 @@ def test_ctrl_c_ends_with_130(tmp_path: Path) -> None:
         _, complaint = process.communicate(timeout=60)
     assert (process.returncode, complaint) == (130, "interrupted\n")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_streams_are_left_as_they_were(monkeypatch: pytest.MonkeyPatch) -> None:
+    out = io.TextIOWrapper(io.BytesIO(), encoding="ascii", errors="strict")
+    monkeypatch.setattr("sys.stdout", out)
+    monkeypatch.setattr("sys.stderr", None)
+    assert main(["solve", "é"]) == 2
+    assert main(["--version"]) == 0
+    assert (sys.stdout.errors, sys.stderr) == ("strict", None)
+
+
+@pytest.mark.parametrize(("error", "code"), [(BrokenPipeError(), 141), (OSError(28, "No space left"), 2)])
+def test_a_caller_keeps_its_output(error: OSError, code: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Notebook(io.StringIO):  # which has no file number
+        def flush(self) -> None:
+            raise error
+
+    monkeypatch.setattr("sys.stdout", Notebook())
+    assert main(["--version"]) == code
 
 
 def test_the_command_line_starts_light() -> None:

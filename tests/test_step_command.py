@@ -7,6 +7,7 @@ import json
 import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,7 @@ from real_cases import REAL, needs_real_cases
 
 from mrta_zoo.cli import main
 from mrta_zoo.debug import compare, record
+from mrta_zoo.debug.session import Session
 from mrta_zoo.io import read_trace, write_plan, write_scenario, write_trace
 from mrta_zoo.plan import Plan
 
@@ -200,6 +202,59 @@ def test_a_lost_connection_saves_the_session(mission: str, tmp_path: Path, numbe
     done = subprocess.run(command, capture_output=True, timeout=60, check=False)
     assert (done.returncode, done.stderr) == (128 + number, b"")
     assert read_trace(session).bookmark == 3
+
+
+def handlers() -> list[object]:
+    return [signal.getsignal(number) for number in sorted(signal.valid_signals())]
+
+
+@pytest.mark.parametrize("flags", [[], ["--session"]], ids=["", "session"])
+def test_signals_are_left_to_who_handles_them(
+    flags: list[str], mission: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen: list[object] = []
+    do = Session.do
+
+    def watch(session: Session, line: str) -> str:
+        seen.append((signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGINT)))
+        return do(session, line)
+
+    monkeypatch.setattr(Session, "do", watch)
+    before = handlers()
+    flags = [*flags, str(tmp_path / "session.json")] if flags else []
+    arguments = ["step", mission, "--policy", "edf", *flags, "--script", script(tmp_path, "f 2")]
+    assert main(arguments) == 0
+    (terminate, interrupt) = seen.pop()
+    assert interrupt is signal.getsignal(signal.SIGINT)
+    assert (terminate is signal.SIG_DFL) == (not flags)  # there is a session to save, or not
+    assert handlers() == before
+    own = signal.signal(signal.SIGTERM, lambda *_: None)
+    try:
+        mine = signal.getsignal(signal.SIGTERM)
+        assert main(arguments) == 0
+        assert seen.pop()[0] is mine is signal.getsignal(signal.SIGTERM)
+    finally:
+        signal.signal(signal.SIGTERM, own)
+
+
+@pytest.mark.parametrize("missing", ["", "SIGHUP"])
+def test_in_a_thread_and_without_hangups(
+    missing: str, mission: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if missing:  # as on Windows
+        monkeypatch.delattr(signal, missing)
+    codes: list[int] = []
+    session = ["--session", str(tmp_path / "session.json"), "--script", script(tmp_path, "f 2")]
+
+    def run() -> None:
+        codes.append(main(["step", mission, "--policy", "edf", *session]))
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    thread.join()
+    run()
+    assert codes == [0, 0]
+    assert read_trace(tmp_path / "session.json").bookmark == 4
 
 
 def test_a_closed_standard_input_is_told(mission: str, capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:

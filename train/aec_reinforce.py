@@ -19,6 +19,7 @@ from mrta_zoo import mrta_v0
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.sharing import build_network
 
 
@@ -64,22 +65,23 @@ def train(
     sampler = torch.Generator().manual_seed(seed)
     for update in range(updates):
         losses, completions = [], []
-        for scenario in range(scenarios):
-            scenario_seed = 1_000_000 + seed * 10_000_000 + update * scenarios + scenario
-            episodes = [play(env, network, scenario_seed, sampler) for _ in range(samples)]
-            mean = sum(completion for completion, _ in episodes) / samples
-            losses += [-(completion - mean) * log_prob for completion, log_prob in episodes]
-            completions.append(mean)
-        optimizer.zero_grad()
-        (torch.stack(losses).mean() * 10).backward()  # completion rates differ by hundredths
-        torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
-        optimizer.step()
+        with few_threads():
+            for scenario in range(scenarios):
+                scenario_seed = 1_000_000 + seed * 10_000_000 + update * scenarios + scenario
+                episodes = [play(env, network, scenario_seed, sampler) for _ in range(samples)]
+                mean = sum(completion for completion, _ in episodes) / samples
+                losses += [-(completion - mean) * log_prob for completion, log_prob in episodes]
+                completions.append(mean)
+            optimizer.zero_grad()
+            (torch.stack(losses).mean() * 10).backward()  # completion rates differ by hundredths
+            torch.nn.utils.clip_grad_norm_(network.parameters(), 1.0)
+            optimizer.step()
         yield sum(completions) / scenarios
 
 
 def evaluate(env: Any, network: Any, episodes: int = 50) -> float:
     """Mean greedy completion rate over scenarios that training never sees."""
-    with torch.no_grad():
+    with torch.no_grad(), few_threads():
         return sum(play(env, network, seed, None)[0] for seed in range(episodes)) / episodes
 
 

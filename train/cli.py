@@ -18,6 +18,7 @@ from mrta_zoo.bounds import MAX_THREADS, check_threads
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.io.outputs import write_elsewhere
+from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.policies.weights import save_policy
 from mrta_zoo.train import checkpoint
 from mrta_zoo.train.collect import BARE, collect
@@ -73,8 +74,6 @@ def train_command(argv: Sequence[str]) -> None:
     """
     command = parse(argv)
     check_threads(command.threads, least=0)
-    if command.threads:
-        torch.set_num_threads(command.threads)
     if not 1 <= command.workers <= MAX_THREADS:
         raise ConfigError(f"workers is {command.workers}; expected a whole number from 1 to {MAX_THREADS}")
     if command.collect:
@@ -82,6 +81,11 @@ def train_command(argv: Sequence[str]) -> None:
             raise ConfigError("--collect only takes over what is there; expected it without --resume and --prepare")
         collect(command.out)
         return
+    with cpu_threads(command.threads or torch.get_num_threads()):
+        _run(command)
+
+
+def _run(command: TrainCommand) -> None:
     options = RunOptions(workers=command.workers, compiled=command.compiled)
     if command.resume:
         if (command.out / f"{BARE}.npz").exists():

@@ -19,6 +19,7 @@ from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import ScenarioGenerator, draw_scenario
 from mrta_zoo.policies.capam.candidate_decoder import CandidateDecoder
+from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.rollout import roll_out
 from mrta_zoo.policies.sharing import Network, build_network
 from mrta_zoo.policies.temperature import tempered
@@ -80,6 +81,8 @@ class RunOptions:
 
 class Reinforce:
     """A training run in memory. `step` and `validate` move it on; `train.checkpoint` saves and restores it.
+
+    On a CPU they use one thread; ``with cpu_threads(4):`` (`policies.cpu_threads`) around them says otherwise.
 
     All randomness derives from (seed, number of the update): a run that is resumed goes on exactly as if it had
     never stopped, with no generator state to be saved.
@@ -164,6 +167,7 @@ class Reinforce:
         """The best validation so far: by completion, then cost, then the earliest. There must have been one."""
         return max(self.history, key=lambda each: (each.completion, -each.cost))
 
+    @few_threads()
     def step(self) -> Update:
         """One gradient step.
 
@@ -214,6 +218,7 @@ class Reinforce:
         accumulate_gradients(policy, scenarios, rollout.segments, advantage, entropy, config.precision)
         return float(loss.mean()), sum(int(segment.live.sum()) for segment in rollout.segments)
 
+    @few_threads()
     def validate(self) -> Validation:
         """Greedy results now; gives the baseline its chance to change, and adds to the history."""
         scenarios = self.validation_batch

@@ -23,10 +23,10 @@ from mrta_zoo.eval.machine import Session, this_session
 from mrta_zoo.eval.reproduce import wording
 from mrta_zoo.eval.rows_file import RowsFile
 from mrta_zoo.eval.runner import Solved, row_of
-from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import Case
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.source import write_text
+from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import POLISH, make_solver, method_names
 

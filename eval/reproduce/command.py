@@ -31,8 +31,8 @@ from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.rows_file import RowsFile
 from mrta_zoo.eval.runner import Solved, row_of
 from mrta_zoo.eval.statistics import LEVEL, RESAMPLES
-from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.io import Case
+from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import METHODS, make_solver, method_names
 from mrta_zoo.suite import small_suite

@@ -12,11 +12,11 @@ from mrta_zoo.eval.experiment import Manifest, open_experiment
 from mrta_zoo.eval.machine import Session, this_session
 from mrta_zoo.eval.plot_history import LearningCurve, read_history
 from mrta_zoo.eval.rows_file import RowsFile
-from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.eval.training.job import Job, mendable, rows_of
 from mrta_zoo.eval.training.pool import train_all
 from mrta_zoo.eval.training.rows import RunRow
 from mrta_zoo.io.records import write_records
+from mrta_zoo.policies.cpu_threads import cpu_threads
 
 MAX_WORKERS = 1024
 

@@ -17,7 +17,6 @@ from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.runner import evaluate
 from mrta_zoo.eval.schedule import schedule_table, totals
 from mrta_zoo.eval.table import summary_tables
-from mrta_zoo.eval.threads import cpu_threads
 from mrta_zoo.generators import TaptcGenerator, UniformGenerator
 from mrta_zoo.io import Case, read_cases
 from mrta_zoo.io.records import write_records
@@ -163,16 +162,6 @@ def test_destinations(tmp_path: Path) -> None:
         check_destination(tmp_path / "absent" / "rows.csv")
     with pytest.raises(ConfigError, match="file is not a folder"):
         check_destination(tmp_path / "file" / "rows.csv")
-
-
-def test_threads_are_put_back() -> None:
-    torch = pytest.importorskip("torch")
-    before = torch.get_num_threads()
-    with cpu_threads(1):
-        assert torch.get_num_threads() == 1
-    assert torch.get_num_threads() == before
-    with pytest.raises(ConfigError, match="threads is 0"), cpu_threads(0):
-        pass
 
 
 def test_a_case_folder_in_the_current_one_and_through_a_link(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
