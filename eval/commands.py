@@ -11,6 +11,7 @@ from typing import Annotated
 
 from tyro.conf import Positional, arg
 
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.eval.console import preparing, progress_bar, results_console, warn
 from mrta_zoo.eval.destination import check_destination, check_distinct
@@ -149,9 +150,7 @@ def solve_command(argv: Sequence[str]) -> None:
             )
         console = results_console()
         console.print(
-            f"{scenario.name}: {scenario.num_tasks} tasks, {scenario.num_robots} robots, planned by {method} "
-            f"in {solved.seconds:.3f} s",
-            soft_wrap=True,
+            f"{scenario.name}: {scenario.size}, planned by {method} in {solved.seconds:.3f} s", soft_wrap=True
         )
         console.print(schedule_table(scenario, solved.score))
         console.print(totals(solved.score), soft_wrap=True)
@@ -240,7 +239,7 @@ def eval_command(argv: Sequence[str]) -> None:
         rows = run_with_progress(cases, solvers)
     with Outputs() as outputs:
         lost = command.out and not outputs.write(
-            f"{len(rows)} rows", command.out, lambda path: write_records(rows, path)
+            counted(len(rows), "row"), command.out, lambda path: write_records(rows, path)
         )
         console = results_console()
         best_known = {case.name: case.best_known for case in cases if case.best_known is not None}

@@ -13,6 +13,7 @@ from rich.table import Table
 from rich.text import Text
 from tyro.conf import Positional, arg
 
+from mrta_zoo.counted import counted
 from mrta_zoo.debug.advisors import Advisor, make_advisor
 from mrta_zoo.debug.called import called
 from mrta_zoo.debug.comparison import Alternative, Comparison, Fate, Outcome, Parting, compare
@@ -137,7 +138,7 @@ def report(found: Comparison, methods: tuple[str, str], rows: int) -> list[str |
     parts.append(
         _listed(
             f"In the place of {first}, {second} would choose otherwise at {len(found.disagreements)} of "
-            f"{len(found.traces[0].choices)} decisions",
+            f"{counted(len(found.traces[0].choices), 'decision')}",
             ("decision", "time", "robot", f"{first}", f"{second}"),
             [
                 (
@@ -191,7 +192,7 @@ def report(found: Comparison, methods: tuple[str, str], rows: int) -> list[str |
 
 def _outcomes(found: Comparison, methods: tuple[str, str]) -> Group:
     return _listed(
-        f"{found.scenario}: {found.tasks} tasks (cost by {COST})",
+        f"{found.scenario}: {counted(found.tasks, 'task')} (cost by {COST})",
         ("method", "completed", "cost", "distance", "makespan"),
         [(name, *_figures(outcome)) for name, outcome in zip(methods, found.outcomes, strict=True)],
         2,

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from mrta_zoo import mrta_v0
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.commands import builtin_cases, run_with_progress
 from mrta_zoo.eval.console import results_console
@@ -92,7 +93,10 @@ def show_steps(console: Console, policy: Policy, scenario: Scenario, steps: int)
     """
     env = mrta_v0.raw_env(scenario=scenario)
     env.reset()
-    console.print(f"{scenario.name}: {scenario.num_tasks} tasks, {scenario.num_robots} robots", soft_wrap=True)
+    console.print(
+        f"{scenario.name}: {scenario.size}",
+        soft_wrap=True,
+    )
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     for heading in ("time", "robot", "why it is its turn", "chose", "out of", "done at", "deadline"):
         left = heading in ("robot", "why it is its turn")
@@ -119,8 +123,8 @@ def show_steps(console: Console, policy: Policy, scenario: Scenario, steps: int)
         turns += 1
     console.print(table)
     console.print(
-        f"… and so on: after {turns} turns no robot has a task left that it can finish in time; "
-        f"{env.mission.completed()} of {scenario.num_tasks} tasks are completed.",
+        f"… and so on: after {counted(turns, 'turn')} no robot has a task left that it can finish in time; "
+        f"{env.mission.completed()} of {counted(scenario.num_tasks, 'task')} are completed.",
         soft_wrap=True,
     )
 

@@ -12,9 +12,22 @@ from mrta_zoo.errors import ConfigError
 CommandClass = TypeVar("CommandClass")
 
 
+METHOD_FLAGS = ("--method", "--methods", "--policy")
+"""How users may spell the flag that says what plans or decides, whichever of them a command calls it."""
+
+
 def parse(of: type[CommandClass], argv: Sequence[str], name: str) -> CommandClass:
     """The command with its flags. Exits with a message and code 2 if they cannot be understood."""
-    return tyro.cli(of, args=list(argv), prog=f"mrta-zoo {name}", config=(tyro.conf.OmitArgPrefixes,))
+    known = {f"--{field}" for field in of.__annotations__}
+    own = next((flag for flag in METHOD_FLAGS if flag in known), None)
+    args = list(argv) if own is None else [_spelt(argument, own) for argument in argv]
+    return tyro.cli(of, args=args, prog=f"mrta-zoo {name}", config=(tyro.conf.OmitArgPrefixes,))
+
+
+def _spelt(argument: str, own: str) -> str:
+    """The argument, with any of `METHOD_FLAGS` spelt as the command spells it."""
+    flag, equals, value = argument.partition("=")
+    return f"{own}{equals}{value}" if flag in METHOD_FLAGS else argument
 
 
 def optional(metavar: str) -> Any:

@@ -12,6 +12,7 @@ import numpy as np
 from tyro.conf import arg
 
 from mrta_zoo.bounds import check_seed
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.case_folder import CaseFormat, write_case_folder
 from mrta_zoo.eval.console import results_console
@@ -83,7 +84,7 @@ def generate_command(argv: Sequence[str]) -> None:
         for index in range(command.count)
     )
     write_case_folder(scenarios, command.out, command.format)
-    results_console().print(f"{command.count} scenarios written to {command.out}", soft_wrap=True)
+    results_console().print(f"{counted(command.count, 'scenario')} written to {command.out}", soft_wrap=True)
 
 
 def _bounds(text: str | None) -> tuple[float, float] | float | str | None:

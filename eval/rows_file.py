@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import msgspec
 
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.source import read_text, write_text
 from mrta_zoo.paths import composed
@@ -83,7 +84,7 @@ class RowsFile(Generic[RowType]):
 
     def _row(self, cells: list[str], where: str) -> RowType:
         if len(cells) != len(self._columns):
-            raise ConfigError(f"{where}: {len(cells)} cells; expected {len(self._columns)}")
+            raise ConfigError(f"{where}: {counted(len(cells), 'cell')}; expected {len(self._columns)}")
         given: dict[str, Any] = {
             name: cell
             for name, cell in zip(self._columns, cells, strict=True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from rich import box
 from rich.table import Table
 
+from mrta_zoo.counted import counted
 from mrta_zoo.left_out import Reason, left_out
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
@@ -46,14 +47,14 @@ def proven(score: Score, bound: int | None) -> str:
         return ""
     if score.completed == bound:
         return "proven optimal: no plan completes more tasks"
-    return f"not proven optimal: it may be; no plan completes more than {bound} tasks"
+    return f"not proven optimal: it may be; no plan completes more than {counted(bound, 'task')}"
 
 
 def totals(score: Score) -> str:
     """All scores, on three lines."""
     visited = sum(len(visits) for visits in score.schedule)
     return (
-        f"completed {score.completed} of {score.tasks} tasks ({100 * score.completion:.1f} %), "
+        f"completed {score.completed} of {counted(score.tasks, 'task')} ({100 * score.completion:.1f} %), "
         f"{visited - score.completed} late, {score.tasks - visited} not taken\n"
         f"cost {score.cost:.3f} ({COST})\n"
         f"distance {score.distance:.1f}, makespan {score.makespan:.1f}"

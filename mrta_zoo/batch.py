@@ -13,6 +13,7 @@ import numpy as np
 import torch
 from torch import Tensor
 
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.rules import MaskRule, check_mask_rule, finish_time, may_choose, task_cost, travel_time
@@ -67,7 +68,8 @@ class ScenarioBatch:
         room_m = m if max_robots is None else max_robots
         if room_n < n or room_m < m:
             raise ConfigError(
-                f"the largest scenario has {n} tasks and {m} robots; the batch was given room for {room_n} and {room_m}"
+                f"the largest scenario has {counted(n, 'task')} and {counted(m, 'robot')}; the batch was given room "
+                f"for {room_n} and {room_m}"
             )
         n, m = room_n, room_m
 

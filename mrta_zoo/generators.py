@@ -15,6 +15,7 @@ from typing import Any, Literal, Protocol, get_args
 import numpy as np
 
 from mrta_zoo.bounds import as_count_range, as_range, as_sides, is_number
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.scenario import FloatArray, Scenario
 
@@ -252,7 +253,8 @@ class Mixture:
             return
         if len(self.weights) != len(self.generators):
             raise ConfigError(
-                f"weights has {len(self.weights)} entries; expected {len(self.generators)}, one a generator"
+                f"weights has {counted(len(self.weights), 'entry', 'entries')}; expected "
+                f"{len(self.generators)}, one a generator"
             )
         if not all(is_number(weight) and weight >= 0 for weight in self.weights) or sum(self.weights) == 0:
             raise ConfigError(f"weights is {self.weights}; expected finite numbers >= 0, not all 0")

@@ -32,6 +32,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.mission import Mission
 from mrta_zoo.scales import Scales
@@ -98,7 +99,7 @@ def split(flat: Any, max_tasks: int, max_robots: int) -> dict[str, Any]:
     tasks, robots, ego, end = _layout(max_tasks, max_robots)
     if flat.shape[-1] != end:
         raise ConfigError(
-            f"a flat observation of {max_tasks} tasks and {max_robots} robots has {end} numbers; "
+            f"a flat observation of {counted(max_tasks, 'task')} and {counted(max_robots, 'robot')} has {end} numbers; "
             f"this one has {flat.shape[-1]}"
         )
     rows = flat.shape[:-1]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from operator import index
 
+from mrta_zoo.counted import counted
 from mrta_zoo.html import in_order, table
 
 
@@ -36,5 +37,7 @@ class Plan:
         by = f" by {self.method}" if self.method else ""
         rows = [(robot, len(route), in_order(route) or "-") for robot, route in enumerate(self.routes)]
         return table(
-            f"Plan{of}{by}: {sum(map(len, self.routes))} tasks taken", ("robot", "tasks", "in this order"), rows
+            f"Plan{of}{by}: {counted(sum(map(len, self.routes)), 'task')} taken",
+            ("robot", "tasks", "in this order"),
+            rows,
         )

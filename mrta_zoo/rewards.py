@@ -7,6 +7,7 @@ import reprlib
 from collections.abc import Callable, Sequence
 from typing import Literal, get_args
 
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.mission import Finished, Mission
 
@@ -80,7 +81,9 @@ def as_rewards(given: object, robots: int) -> list[float]:
             f"the reward function gave {reprlib.repr(given)}; expected a list of {robots} numbers, one for each robot"
         ) from None
     if len(rewards) != robots:
-        raise ConfigError(f"the reward function gave {len(rewards)} numbers; expected {robots}, one for each robot")
+        raise ConfigError(
+            f"the reward function gave {counted(len(rewards), 'number')}; expected {robots}, one for each robot"
+        )
     if not all(map(math.isfinite, rewards)):
         robot = list(map(math.isfinite, rewards)).index(False)
         raise ConfigError(f"the reward function gave {rewards[robot]} to robot {robot}; expected a finite number")

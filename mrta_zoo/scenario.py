@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.html import map_of, table
 
@@ -82,8 +83,8 @@ class Scenario:
         ):  # fmt: skip
             if getattr(self, attribute).shape != shape:
                 raise ScenarioError(
-                    f"{attribute} has shape {getattr(self, attribute).shape}; with {n} deadlines and "
-                    f"{m} capacities it must be {shape}"
+                    f"{attribute} has shape {getattr(self, attribute).shape}; with {counted(n, 'deadline')} and "
+                    f"{counted(m, 'capacity', 'capacities')} it must be {shape}"
                 )
         object.__setattr__(
             self, "map_size", _pair(self.map_size, "map_size", SMALLEST, f"two finite numbers > 0{BOUNDS}")
@@ -155,8 +156,13 @@ class Scenario:
         # Through the constructor, so that a copy is checked and read-only, too.
         return type(self), tuple(getattr(self, each.name) for each in fields(self))
 
+    @property
+    def size(self) -> str:
+        """How many tasks and robots, in words."""
+        return f"{counted(self.num_tasks, 'task')}, {counted(self.num_robots, 'robot')}"
+
     def __repr__(self) -> str:
-        return f"Scenario({self.name!r}, {self.num_tasks} tasks, {self.num_robots} robots)"
+        return f"Scenario({self.name!r}, {self.size})"
 
     def _repr_html_(self) -> str:
         """What a notebook shows: the ranges of what it holds, and the map."""
@@ -168,7 +174,7 @@ class Scenario:
             )
         ]  # fmt: skip
         width, height = self.map_size
-        title = f"{self.name}: {self.num_tasks} tasks, {self.num_robots} robots, map {width:g} by {height:g}"
+        title = f"{self.name}: {self.size}, map {width:g} by {height:g}"
         tasks, robots = ((places - self.map_origin).tolist() for places in (self.task_xy, self.robot_xy))
         picture = map_of(
             self.map_size,
@@ -212,7 +218,7 @@ def as_names(names: Iterable[object], who: str, count: int) -> tuple[str, ...]:
     if not given:
         return ()
     if len(given) != count:
-        raise ScenarioError(f"{who}_names has {len(given)} names; expected {expected}")
+        raise ScenarioError(f"{who}_names has {counted(len(given), 'name')}; expected {expected}")
     seen: dict[str, int] = {}
     for index, name in enumerate(given):
         text = str(name).strip() if isinstance(name, (str, int, np.integer)) and not isinstance(name, bool) else ""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ActionError, PlanError
 from mrta_zoo.mission import Mission
 from mrta_zoo.plan import Plan
@@ -140,7 +141,9 @@ class Trace:
         mission = Mission(self.scenario, self.mask_rule)
         for index, choice in enumerate(self.choices):
             if mission.done:
-                raise PlanError(f"decision {index} comes after the end of the mission; expected {index} decisions")
+                raise PlanError(
+                    f"decision {index} comes after the end of the mission; expected {counted(index, 'decision')}"
+                )
             yield mission, Decision(index, mission.time, mission.actor, choice)
             make(mission, choice, index)
 

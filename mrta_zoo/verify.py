@@ -11,6 +11,7 @@ import math
 import operator
 from dataclasses import dataclass
 
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import PlanError
 from mrta_zoo.html import in_order, table
 from mrta_zoo.plan import Plan
@@ -70,8 +71,8 @@ class Score:
     def _repr_html_(self) -> str:
         """What a notebook shows: the scores, and what each robot did."""
         title = (
-            f"{self.completed} of {self.tasks} tasks completed ({100 * self.completion:.1f} %), cost {self.cost:.3f}, "
-            f"distance {self.distance:.1f}, makespan {self.makespan:.1f} (cost by {COST})"
+            f"{self.completed} of {counted(self.tasks, 'task')} completed ({100 * self.completion:.1f} %), "
+            f"cost {self.cost:.3f}, distance {self.distance:.1f}, makespan {self.makespan:.1f} (cost by {COST})"
         )
         tasks = self.task_names or range(self.tasks)
         robots = self.robot_names or range(len(self.schedule))
@@ -146,8 +147,8 @@ def _routes(scenario: Scenario, plan: Plan) -> list[list[int]]:
     """The plan's routes as checked integers."""
     if len(plan.routes) != scenario.num_robots:
         raise PlanError(
-            f"the plan has {len(plan.routes)} routes, but scenario {scenario.name!r} has "
-            f"{scenario.num_robots} robots; every robot needs one, empty if it stays where it is"
+            f"the plan has {counted(len(plan.routes), 'route')}, but scenario {scenario.name!r} has "
+            f"{counted(scenario.num_robots, 'robot')}; every robot needs one, empty if it stays where it is"
         )
     routes: list[list[int]] = []
     taken: dict[int, str] = {}

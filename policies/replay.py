@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import PlanError
 from mrta_zoo.observation import ROBOT_FEATURES, Observation
 from mrta_zoo.plan import Plan
@@ -47,7 +48,7 @@ class ReplayPolicy:
         """
         robot = int(observation["observation"]["robots"][:, _IS_EGO].argmax())
         if robot >= len(self._next):
-            raise PlanError(f"the plan has {len(self._next)} routes, none for robot {robot}")
+            raise PlanError(f"the plan has {counted(len(self._next), 'route')}, none for robot {robot}")
         route, mask = self.plan.routes[robot], observation["action_mask"]
         while self._next[robot] < len(route):
             task = route[self._next[robot]]

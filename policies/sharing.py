@@ -15,6 +15,7 @@ from typing import Literal, cast
 import torch
 from torch import Tensor, nn
 
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.candidates import Candidates
 from mrta_zoo.policies.capam.config import NetworkConfig
@@ -121,7 +122,7 @@ class IndependentNetworks(SeveralNetworks):
 
     def _none_for(self, who: str) -> ConfigError:
         return ConfigError(
-            f"{who} no network: these independent policies were trained for {len(self.robots)} robots; "
+            f"{who} no network: these independent policies were trained for {counted(len(self.robots), 'robot')}; "
             "use a policy with sharing 'shared' or 'by-capacity' for more"
         )
 

@@ -17,6 +17,7 @@ from safetensors import SafetensorError
 from safetensors.torch import load_file, save
 
 from mrta_zoo.atomic import replacing
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.source import read_text
 from mrta_zoo.policies.capam.config import NetworkConfig
@@ -93,7 +94,9 @@ def build_with(tensors: dict[str, torch.Tensor], info: PolicyInfo, path: Path) -
     if info.sharing == "independent":  # before as many networks are made as it says
         there = len({name.split(".")[1] for name in tensors if name.startswith("robots.")})
         if there != info.robots:
-            raise ConfigError(f"{path}: holds networks of {there} robots; its JSON says that robots is {info.robots}")
+            raise ConfigError(
+                f"{path}: holds networks of {counted(there, 'robot')}; its JSON says that robots is {info.robots}"
+            )
 
     def build() -> Network:
         return build_network(info.network, info.sharing, info.robots, seed=0, kinds=info.kinds)

@@ -270,3 +270,28 @@ def test_standard_output_that_is_full_or_closed(cases: Path, arguments: str) -> 
         assert (full.returncode, full.stderr) == (2, "error: the output: no space left on device\n")
     closed = subprocess.run(f"{command} >&-", shell=True, capture_output=True, text=True, timeout=60)
     assert (closed.returncode, closed.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("flag", ["--method", "--methods", "--policy"])
+@pytest.mark.parametrize("joined", [False, True])
+def test_the_flag_of_methods_may_be_spelt_any_way(
+    flag: str, joined: bool, cases: Path, tmp_path: Path, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mission = str(next((cases / "group1").glob("*.txt")))
+    monkeypatch.setattr("sys.stdin", io.StringIO("log\n"))
+
+    def spelt(value: str) -> list[str]:
+        return [f"{flag}={value}"] if joined else [flag, value]
+
+    for arguments, said in (
+        (["solve", mission, *spelt("edf")], "planned by edf"),
+        (["eval", "--cases", str(cases), *spelt("edf,nearest")], "nearest"),
+        (["step", mission, *spelt("edf")], "edf"),
+        (["compare", mission, *spelt("edf,nearest")], "edf"),
+        (["replay", mission, *spelt("edf"), "--out", str(tmp_path / "page.html")], "edf replayed"),
+    ):
+        assert main(arguments) == 0
+        assert said in capsys.readouterr().out
+    for command in ("reproduce", "converge"):
+        assert main([command, "--cases", str(cases), "--out", str(tmp_path / "out"), *spelt("none-such")]) == 2
+        assert "there is no method 'none-such'" in capsys.readouterr().err

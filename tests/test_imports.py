@@ -21,6 +21,7 @@ LAYERS = (
             "mrta_zoo.registration",
             "mrta_zoo.atomic",
             "mrta_zoo.bounds",
+            "mrta_zoo.counted",
             "mrta_zoo.extras",
             "mrta_zoo.palette",
             "mrta_zoo.html",
@@ -71,7 +72,7 @@ PACKAGES = {
     "train": "mrta_zoo.train",
     "eval": "mrta_zoo.eval",
 }
-VERIFY_MAY_IMPORT = {"mrta_zoo.scenario", "mrta_zoo.plan", "mrta_zoo.errors", "mrta_zoo.html"}
+VERIFY_MAY_IMPORT = {"mrta_zoo.scenario", "mrta_zoo.plan", "mrta_zoo.errors", "mrta_zoo.html", "mrta_zoo.counted"}
 HEAVY = ("torch", "matplotlib", "scipy", "tyro", "rich", "pygame", "plotly")
 
 

@@ -141,7 +141,7 @@ def test_numbers_that_would_overflow_or_vanish_are_refused(changes: dict[str, An
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"task_names": ("a",)}, "task_names has 1 names; expected a different text for each of the 3 tasks"),
+        ({"task_names": ("a",)}, "task_names has 1 name; expected a different text for each of the 3 tasks"),
         ({"task_names": ("a", "b", "a")}, "task 2 has the name 'a', as task 0"),
         ({"task_names": ("a", "b", " ")}, "task 2 has the name ' '; expected text"),
         ({"task_names": ("a", "b", "c\nd")}, "task 2 has the name .c.nd."),

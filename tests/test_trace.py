@@ -99,5 +99,5 @@ def test_the_tightest_rule() -> None:
 def test_a_plan_that_the_rule_forbids() -> None:
     with pytest.raises(PlanError, match="mask rule 'feasible' leaves robot 0 nothing to choose where the plan goes on"):
         Trace.of_plan(LINE, Plan.of([[1, 0, 2], []]), "feasible")
-    with pytest.raises(PlanError, match="has 1 routes"):
+    with pytest.raises(PlanError, match="has 1 route"):
         Trace.of_plan(LINE, Plan.of([[1]]))

@@ -94,7 +94,7 @@ def test_integers_of_any_kind_are_tasks() -> None:
     [
         (
             ((0,),),
-            "the plan has 1 routes, but scenario 'four' has 2 robots; every robot needs one, empty "
+            "the plan has 1 route, but scenario 'four' has 2 robots; every robot needs one, empty "
             "if it stays where it is",
         ),
         (

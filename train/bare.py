@@ -27,6 +27,7 @@ import numpy as np
 import torch
 
 from mrta_zoo.atomic import replacing
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.stand_ins import why_unreadable
@@ -116,7 +117,7 @@ def train(
                     run.config = config = replace(
                         config, updates=start - config.imitation_updates + into + max(more, 1)
                     )
-                    print(f"{out.name}: {config.updates} updates of REINFORCE", flush=True)
+                    print(f"{out.name}: {counted(config.updates, 'update')} of REINFORCE", flush=True)
             else:
                 mean = sum(update.loss for update in updates) / max(1, len(updates))
                 print(

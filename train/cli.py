@@ -15,6 +15,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from mrta_zoo.bounds import MAX_THREADS, check_threads
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.io.outputs import write_elsewhere
@@ -155,11 +156,11 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
     parameters = sum(parameter.numel() for parameter in run.network.parameters())
     total, imitated = config.total_updates, ""
     if config.imitation_updates:
-        imitated = f"{config.imitation_updates} of {config.imitation_batch} plans, then "
-    begins = f"goes on after update {run.update} of {total}" if run.update else f"{total} updates"
+        imitated = f"{config.imitation_updates} of {counted(config.imitation_batch, 'plan')}, then "
+    begins = f"goes on after update {run.update} of {total}" if run.update else counted(total, "update")
     console.print(
         f"{folder}: {begins}, {imitated}of {config.scenarios} x {config.samples} episodes on {run.device}, "
-        f"{parameters:,} parameters; validation on {config.validation_scenarios:,} scenarios",
+        f"{parameters:,} parameters; validation on {counted(config.validation_scenarios, 'scenario', form=',')}",
         highlight=False,
         soft_wrap=True,
     )

@@ -135,9 +135,7 @@ class TrainConfig:
             raise ConfigError(f"tasks is {self.tasks}; expected one or more whole numbers >= 1")
         weights = self.task_weights
         if weights and (len(weights) != len(self.tasks) or not all(0 < weight < math.inf for weight in weights)):
-            raise ConfigError(
-                f"task_weights is {weights}; expected {len(self.tasks)} numbers > 0, one for each of tasks"
-            )
+            raise ConfigError(f"task_weights is {weights}; expected a number > 0 for each of tasks")
         for name in ("imitation_plans", "imitation_updates", "imitation_decisions"):
             if getattr(self, name) < 0:
                 raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 0")

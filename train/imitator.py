@@ -10,6 +10,7 @@ import numpy.typing as npt
 import torch
 
 from mrta_zoo.batch import ScenarioBatch
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.rollout import Segment
 from mrta_zoo.policies.sharing import Network
@@ -55,7 +56,7 @@ class Imitator:
         for size in self._config.tasks:
             of_size = [plan for plan in plans if plan.scenario.num_tasks == size]
             if not of_size:
-                raise ConfigError(f"there are no plans with {size} tasks to imitate; make more of them")
+                raise ConfigError(f"there are no plans with {counted(size, 'task')} to imitate; make more of them")
             self._plans[size] = PlanBatch(of_size, self._device)
 
     def release(self) -> None:

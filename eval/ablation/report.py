@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.ablation.claims import Claim, claims_of, gap_by_robots, verdicts
 from mrta_zoo.eval.ablation.figures import curves_data, draw_curves, draw_forest, forest_data
 from mrta_zoo.eval.ablation.questions import ENCODER
@@ -101,7 +102,7 @@ def _claims(study: Study, claims: Sequence[Claim]) -> Section:
     text = (
         f"Networks of embedding {next(iter(study.variants.values())).config.network.embedding} that saw "
         f"{budget.paper_updates * budget.scenarios * budget.samples:,} episodes with {budget.tasks} tasks, "
-        f"{wording.counted(study.seeds, 'run')} of each variant; the paper’s are larger and saw some 50 million "
+        f"{counted(study.seeds, 'run')} of each variant; the paper’s are larger and saw some 50 million "
         "episodes with 100 tasks. An answer here is one about small networks early in training.",
     )
     return Section(title="The paper’s claims", text=text, tables=tuple(tables))
@@ -178,7 +179,7 @@ def _means(study: Study) -> Section:
         runs = found[name, distribution]
         overall = run_values(runs, equal_weights(ROBOTS))
         of_runs = {robots: run_values(runs, {robots: 1.0}) for robots in ROBOTS}
-        by_robots = {wording.counted(robots, "robot"): f"{np.mean(of_runs[robots]):.1f}" for robots in ROBOTS}
+        by_robots = {counted(robots, "robot"): f"{np.mean(of_runs[robots]):.1f}" for robots in ROBOTS}
         each_run = ", ".join(f"{value:.1f}" for value in overall)
         variant = study.variants[name]
         shown.append(
@@ -194,7 +195,7 @@ def _means(study: Study) -> Section:
     count = len(study.rows) // max(1, len(data) * len(ROBOTS))
     caption = (
         f"Tasks completed in time, mean %, in one greedy pass, on {count} held-out scenarios for each number of "
-        f"robots; means over {wording.counted(study.seeds, 'run')}. The CSV has a line for each run."
+        f"robots; means over {counted(study.seeds, 'run')}. The CSV has a line for each run."
     )
     table = Table(name="completion", caption=caption, shown=pd.DataFrame(shown), data=pd.DataFrame(data))
     return Section(title="Tasks completed", tables=(table,))

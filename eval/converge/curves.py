@@ -10,6 +10,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.figure_style import FAINT, INK, new_figure, plain, style_of
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.statistics import estimate_mean
@@ -94,7 +95,9 @@ def draw_curves(curves: pd.DataFrame) -> Figure:
                 axes.annotate(f"{method},\nno budget", (at, mean), (-8, 0), textcoords="offset points", fontsize=9,
                               color=INK, ha="right", va="center", zorder=4, path_effects=HALO)  # fmt: skip
         _name_ends(axes, ends)
-        axes.set_title(f"{tasks} tasks, {panel['cases'].max()} cases", fontsize=10, color=INK, loc="left")
+        axes.set_title(
+            f"{counted(tasks, 'task')}, {counted(panel['cases'].max(), 'case')}", fontsize=10, color=INK, loc="left"
+        )
         axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
         axes.set_xlabel("measured planning time a case, mean, seconds (logarithmic)", fontsize=9, color=FAINT)
         axes.set_ylabel(f"tasks completed in time, mean % of {tasks}", fontsize=9, color=FAINT)

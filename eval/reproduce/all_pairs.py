@@ -7,6 +7,7 @@ from itertools import combinations
 
 import pandas as pd
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.reproduce import wording
 from mrta_zoo.eval.reproduce.parts import Table
 from mrta_zoo.eval.reproduce.study import Study
@@ -61,8 +62,8 @@ def all_pairs_table(study: Study, tasks: int, pairs: Pairs) -> Table:
         name=f"all_pairs_{tasks}",
         caption=f"Any two methods over all cases with {tasks} tasks: mean of the line’s method minus the column’s, in "
         f"percentage points. Bold: paired t-test p < {SIGNIFICANT}, Holm-adjusted for all these "
-        f"{wording.counted(len(pairs), 'comparison')}. n = {study.cases(study.groups(tasks)[0])} pairs. Intervals are "
-        "in the CSV file.",
+        f"{counted(len(pairs), 'comparison')}. n = {counted(study.cases(study.groups(tasks)[0]), 'pair')}. Intervals "
+        "are in the CSV file.",
         shown=pd.DataFrame(shown),
         data=pd.DataFrame(data),
         bold=frozenset(bold),

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import pandas as pd
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.reproduce import paper, wording
 from mrta_zoo.eval.reproduce.all_pairs import Pairs, all_pairs_table
 from mrta_zoo.eval.reproduce.completion import case_counts
@@ -151,7 +152,7 @@ def _overall_table(study: Study, tasks: int, chosen: list[Comparison]) -> Table:
         f"and d_z, each with its {wording.INTERVAL} in brackets ({wording.BOOTSTRAP}; "
         f"noncentral t); cases in which {study.against} completes more, equally many, fewer tasks; Holm-adjusted "
         "p-values, two-sided. Intervals are for each line alone and not adjusted, so one may leave out 0 where the "
-        f"adjusted test sees no difference. n = {study.cases(study.groups(tasks)[0])} pairs."
+        f"adjusted test sees no difference. n = {counted(study.cases(study.groups(tasks)[0]), 'pair')}."
     )
     return Table(name=f"paired_tests_{tasks}", caption=caption, shown=pd.DataFrame(shown), data=_data(chosen))
 

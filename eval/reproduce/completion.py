@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import pandas as pd
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.reproduce import wording
 from mrta_zoo.eval.reproduce.figures import draw_boxes
 from mrta_zoo.eval.reproduce.parts import Picture, Section, Table
@@ -43,7 +44,7 @@ def case_counts(study: Study, tasks: int) -> str:
     """How many cases each column stands on."""
     counts = {group.label: study.cases(group) for group in study.groups(tasks)}
     different = set(list(counts.values())[1:] or counts.values())
-    total = f"n = {next(iter(counts.values()))} cases"
+    total = f"n = {counted(next(iter(counts.values())), 'case')}"
     if len(counts) == 1:
         return f"{total}."
     if len(different) == 1:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pandas as pd
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.reproduce import wording
 from mrta_zoo.eval.reproduce.figures import draw_gaps
 from mrta_zoo.eval.reproduce.parts import Picture, Section, Table
@@ -59,8 +60,8 @@ def optimality_section(study: Study) -> Section:
         name="optimality_gap",
         caption=f"Gap: tasks that the best plan completes and the method does not, in % of those the best plan "
         f"completes; mean with its {wording.INTERVAL} in brackets (BCa bootstrap over scenarios); how often the method "
-        f"was optimal, and by how many tasks it was off at most. n = {len(proved)} scenarios. Trained methods have "
-        "learned on 50 tasks and more, so these are far from what they know.",
+        f"was optimal, and by how many tasks it was off at most. n = {counted(len(proved), 'scenario')}. Trained "
+        "methods have learned on 50 tasks and more, so these are far from what they know.",
         shown=pd.DataFrame(shown),
         data=pd.DataFrame(data),
     )
@@ -68,7 +69,8 @@ def optimality_section(study: Study) -> Section:
         return Section(title=TITLE, text=tuple(text), tables=(table,))
     picture = Picture(
         name="optimality_gap_figure",
-        caption=f"Mean optimality gap; bar: {wording.INTERVAL} (BCa bootstrap). n = {len(proved)} scenarios.",
+        caption=f"Mean optimality gap; bar: {wording.INTERVAL} (BCa bootstrap). "
+        f"n = {counted(len(proved), 'scenario')}.",
         figure=draw_gaps(study, gaps),
         data=table.data,
     )
@@ -80,7 +82,7 @@ def _beaten(impossible: pd.DataFrame) -> str:
         return f"No method ever completed more tasks than {EXACT} proved possible, as it must be."
     names = wording.listed([f"{line.method} on {line.case}" for line in impossible.head(5).itertuples()])
     return (
-        f"ERROR: {wording.counted(len(impossible), 'plan')} completed more tasks than {EXACT} proved possible "
+        f"ERROR: {counted(len(impossible), 'plan')} completed more tasks than {EXACT} proved possible "
         f"({names}): there is a mistake in the exact solver, the verifier or the rules, and this section must not "
         "be used."
     )

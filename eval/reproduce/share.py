@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.reproduce import wording
 from mrta_zoo.eval.reproduce.completion import case_counts, estimate_table
 from mrta_zoo.eval.reproduce.figures import draw_intervals
@@ -25,12 +26,12 @@ def share_section(study: Study) -> Section:
     text = [_basis(with_reference, cases)]
     if beaten:
         text.append(
-            f"In {wording.counted(beaten, 'case')} a method run here completed more tasks than the reference table "
+            f"In {counted(beaten, 'case')} a method run here completed more tasks than the reference table "
             "knows of; shares above 100 % are such cases."
         )
     if not known.all():
         text.append(
-            f"{wording.counted(cases - frame.loc[known, 'case'].nunique(), 'case')} in which nobody completed any task "
+            f"{counted(cases - frame.loc[known, 'case'].nunique(), 'case')} in which nobody completed any task "
             "are left out."
         )
     shares = replace(study, frame=frame.assign(share=100 * frame["completed"] / best)[known])
@@ -71,6 +72,6 @@ def _basis(with_reference: int, cases: int) -> str:
     if not with_reference:
         return f"The cases come without a reference.csv, so best known is {run}."
     return (
-        f"Best known is the best in reference.csv for {wording.counted(with_reference, 'case')}, and for the other "
+        f"Best known is the best in reference.csv for {counted(with_reference, 'case')}, and for the other "
         f"{cases - with_reference} {run}."
     )

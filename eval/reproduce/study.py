@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, field, fields
 import numpy as np
 import pandas as pd
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.statistics import Estimate, estimate_mean
 
@@ -39,7 +40,7 @@ class Group:
     def label(self) -> str:
         """What a column or panel is called."""
         if self.robots is not None:
-            return f"{self.robots} robot{'s' * (self.robots != 1)}"
+            return counted(self.robots, "robot")
         return "all cases" if self.tasks is None else f"all with {self.tasks} tasks"
 
 

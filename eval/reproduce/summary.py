@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.machine import Session
 from mrta_zoo.eval.reproduce import wording
 from mrta_zoo.eval.reproduce.all_pairs import Pairs, not_told_apart
@@ -53,9 +54,9 @@ def _ranking(study: Study, group: Group) -> str:
     means = {method: study.select(group, method)["percent"].mean() for method in study.methods}
     order = sorted(means, key=lambda method: -means[method])
     first = (
-        f"{group.tasks} tasks ({wording.counted(study.cases(group), 'case')}): tasks completed in time, mean: "
+        f"{group.tasks} tasks ({counted(study.cases(group), 'case')}): tasks completed in time, mean: "
         if len(order) > 1
-        else f"{group.tasks} tasks ({wording.counted(study.cases(group), 'case')}): "
+        else f"{group.tasks} tasks ({counted(study.cases(group), 'case')}): "
     )
     return first + ", ".join(f"{method} {wording.number(means[method])} %" for method in order) + "."
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import pandas as pd
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.machine import Session
 from mrta_zoo.eval.reproduce import paper, wording
 from mrta_zoo.eval.reproduce.figures import draw_seconds
@@ -63,7 +64,7 @@ def busy_note(sessions: Sequence[Session]) -> tuple[str, ...]:
         return ()
     return (
         f"Beware: the machine was busy with other work while this was measured (load {wording.listed(loads)} at the "
-        f"beginning, on {wording.counted(sessions[0].cores, 'core')}), so times are longer than they would be alone, "
+        f"beginning, on {counted(sessions[0].cores, 'core')}), so times are longer than they would be alone, "
         "and not equally so for all methods. Measure again on a quiet machine before quoting them.",
     )
 

@@ -46,8 +46,3 @@ def seconds(value: float) -> str:
 def listed(items: Sequence[str]) -> str:
     """a, b and c."""
     return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} and {items[-1]}"
-
-
-def counted(count: int, singular: str, plural: str = "") -> str:
-    """1 case, 2 cases."""
-    return f"{count} {singular if count == 1 else plural or singular + 's'}"

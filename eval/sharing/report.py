@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import pandas as pd
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.experiment import Manifest
 from mrta_zoo.eval.machine import Session
 from mrta_zoo.eval.reproduce import wording
@@ -94,7 +95,9 @@ def _unseen(study: Study) -> list[str]:
     found = [f"Numbers of robots never trained on: {'; '.join(parts)}."]
     refusal = study.refusal(INDEPENDENT)
     if refusal is not None:
-        found.append(f"Asked to plan for {refusal[0]} robots, {INDEPENDENT} networks refuse: “{refusal[1]}”.")
+        found.append(
+            f"Asked to plan for {counted(refusal[0], 'robot')}, {INDEPENDENT} networks refuse: “{refusal[1]}”."
+        )
     return found
 
 
@@ -127,7 +130,7 @@ def _differences(study: Study, comparisons: Sequence[Comparison]) -> Section:
                 TRAINED: wording.estimate(difference, signed=True),
                 "p, adjusted": wording.p_value(each.adjusted),
                 **{
-                    wording.counted(robots, "robot"): wording.number(each.by_robots[robots].mean, signed=True)
+                    counted(robots, "robot"): wording.number(each.by_robots[robots].mean, signed=True)
                     if robots in each.by_robots
                     else wording.DASH
                     for robots in study.held_out.robots
@@ -174,9 +177,7 @@ def _by_robots(study: Study) -> Section:
             {
                 "": name,
                 **{
-                    wording.counted(robots, "robot"): wording.estimate(means[robots])
-                    if robots in means
-                    else "no network"
+                    counted(robots, "robot"): wording.estimate(means[robots]) if robots in means else "no network"
                     for robots in study.held_out.robots
                 },
             }
@@ -285,7 +286,7 @@ def _curves(study: Study) -> Section:
     data = curves_data(study)
     caption = (
         "Greedy completion on each run’s own validation scenarios, which runs of equal seeds share. Thin: runs; bold: "
-        f"the mean over {wording.counted(study.seeds, 'run')}; bands: Student’s {100 * LEVEL:.0f} % interval of that "
+        f"the mean over {counted(study.seeds, 'run')}; bands: Student’s {100 * LEVEL:.0f} % interval of that "
         "mean, other validation scenarios for other seeds included. At equal episodes: against the episodes sampled; "
         "at equal decisions a network: against the episodes sampled over the number of networks that share their "
         "decisions."

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.rows_file import RowsFile
 from mrta_zoo.eval.training.held_out import Distribution, HeldOut
@@ -124,7 +125,7 @@ def rows_of(job: Job) -> list[RunRow]:
     for row in rows:
         if row.tasks != job.held_out.tasks or not 0 <= row.completed <= row.tasks:
             raise ConfigError(
-                f"{job.rows_file} has {row.completed} of {row.tasks} tasks completed; expected 0 to "
+                f"{job.rows_file} has {row.completed} of {counted(row.tasks, 'task')} completed; expected 0 to "
                 f"{job.held_out.tasks} of {job.held_out.tasks}; delete the file, and run the command again"
             )
     wanted = [

@@ -12,6 +12,7 @@ from typing import Any
 import torch
 from rich.console import Console
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.console import progress_bar
 from mrta_zoo.eval.training.job import Job, perform
 from mrta_zoo.train.child_process import pool_of
@@ -37,7 +38,9 @@ def train_all(jobs: Sequence[Job], missing: Sequence[Job], workers: int) -> None
             progress.update(bar, completed=sum(done.values()))
             if share == 1:
                 finished = sum(each == 1 for each in done.values())
-                line = f"{job.variant}, seed {job.seed}: trained and compared ({finished} of {len(jobs)} runs)"
+                line = (
+                    f"{job.variant}, seed {job.seed}: trained and compared ({finished} of {counted(len(jobs), 'run')})"
+                )
                 (progress.console if progress.console.is_terminal else console).print(line, soft_wrap=True)
 
         perform_all(missing, workers, report)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from mrta_zoo.counted import counted
 from mrta_zoo.debug.called import called, cells, headings
 from mrta_zoo.debug.outlook import SortKey
 from mrta_zoo.debug.stepper import Stepper
@@ -96,7 +97,7 @@ def _tasks(stepper: Stepper, view: View) -> Listing:
         rows.append(Row(row, "advised" if advised else "made" if chosen else "plain" if free else "faint"))
     choices = int(stepper.mission.mask(robot).sum())
     when = "" if own else " when it is next free"
-    title = f"{scenario.robot_name(robot)} may choose {choices} of {len(rows)} tasks{when}"
+    title = f"{scenario.robot_name(robot)} may choose {choices} of {counted(len(rows), 'task')}{when}"
     numbers = ("dist", "travel", "finish", "slack", "due", *(("prob %",) if probable else ()))
     tasks = headings("task", scenario.task_names)
     return Listing(title, ("", *tasks, *numbers, ""), _texts(tasks, scenario.task_names), rows)
@@ -122,7 +123,7 @@ def _robots(stepper: Stepper) -> Listing:
         rows.append(Row(row, "advised" if now.doing == "acting" else "faint" if now.doing == "retired" else "plain"))
     robots = headings("robot", scenario.robot_names)
     columns = (*robots, "place", "capacity", "speed", "taken", "free at", "choices", "")
-    return Listing(f"{len(rows)} robots", columns, _texts(robots, scenario.robot_names), rows)
+    return Listing(counted(len(rows), "robot"), columns, _texts(robots, scenario.robot_names), rows)
 
 
 def _log(stepper: Stepper) -> Listing:
@@ -145,7 +146,8 @@ def _log(stepper: Stepper) -> Listing:
         rows.append(Row(row, "plain" if choice.advice is None else "made"))
     columns = ("decision", "time", "robot", "task", "finish", "slack", "")
     texts = (*_texts(("robot",), scenario.robot_names), *_texts(("task",), scenario.task_names))
-    return Listing(f"{len(rows)} decisions so far, the last one first", columns, texts, rows[::-1])
+    title = f"{counted(len(rows), 'decision')} so far, the last one first"
+    return Listing(title, columns, texts, rows[::-1])
 
 
 def _texts(headings: tuple[str, ...], names: Sequence[str]) -> tuple[str, ...]:

@@ -45,7 +45,10 @@ def header(session: Session) -> list[RenderableType]:
     count = np.bincount(mission.status, minlength=len(Status))
     place = f"decision {stepper.position}" + (f"/{len(stepper)}" if stepper.position < len(stepper) else "")
     lines = [
-        (f"{scenario.name}: {scenario.num_tasks} tasks, {scenario.num_robots} robots, {stepper.mask_rule}", "bold"),
+        (
+            f"{scenario.name}: {scenario.size}, {stepper.mask_rule}",
+            "bold",
+        ),
         (
             f"time {mission.time:.1f}  {place}  {count[Status.COMPLETED]} completed, {count[Status.ASSIGNED]} under "
             f"way, {count[Status.MISSED]} missed, {count[Status.ACTIVE]} open",

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn, get_args
 
+from mrta_zoo.counted import counted
 from mrta_zoo.debug.advisors import Advisor, PolicyAdvisor
 from mrta_zoo.debug.called import find, found, numbers_count
 from mrta_zoo.debug.outlook import SortKey
@@ -155,7 +156,7 @@ class Session:
             raise ConfigError(f"{path} is there already and is no session; expected the name of a new file, or of one")
         self.stepper.save(path)
         self.path, self.unsaved = self.path or path, 0  # a copy does not move the session
-        return f"{len(self.stepper)} decisions saved to {path}"
+        return f"{counted(len(self.stepper), 'decision')} saved to {path}"
 
     def load(self, file: str) -> str:
         trace = read_trace(file)
@@ -164,7 +165,7 @@ class Session:
         advisor = self._advisor if same or isinstance(self._advisor, PolicyAdvisor) else None
         self.stepper = Stepper.resume(trace, advisor)
         self.path, self.unsaved = Path(file), 0
-        return f"{len(self.stepper)} decisions loaded; {self.where()}"
+        return f"{counted(len(self.stepper), 'decision')} loaded; {self.where()}"
 
     def quit(self, _: str) -> str:
         self.over = True
@@ -176,8 +177,8 @@ class Session:
         if stepper.done:
             mission = stepper.mission
             return (
-                f"the mission is over: completed {mission.completed()} of {stepper.scenario.num_tasks} tasks, "
-                f"cost {mission.cost():.3f}, makespan {mission.time:.1f}"
+                f"the mission is over: completed {mission.completed()} of "
+                f"{counted(stepper.scenario.num_tasks, 'task')}, cost {mission.cost():.3f}, makespan {mission.time:.1f}"
             )
         robot = stepper.scenario.robot_name(stepper.robot)
         return f"decision {stepper.position}: {robot} chooses at {stepper.mission.time:.1f}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from mrta_zoo.counted import counted
 from mrta_zoo.debug.advisors import Advisor, make_advisor
 from mrta_zoo.debug.outlook import Prospect, SortKey, outlook, ranked
 from mrta_zoo.debug.recorder import overrule
@@ -243,7 +244,9 @@ class Stepper:
 
     def _check_not_over(self) -> None:
         if self.done:
-            raise ActionError(f"the mission is over, after {self.position} decisions; go back to choose otherwise")
+            raise ActionError(
+                f"the mission is over, after {counted(self.position, 'decision')}; go back to choose otherwise"
+            )
 
     def _choose(self, choice: Choice) -> Choice:
         made = self.made

@@ -10,6 +10,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.source import check_name, shown
 from mrta_zoo.paths import composed
@@ -102,7 +103,7 @@ def assemble(main: Part, agents: Part | None) -> Scenario:
         raise ScenarioError(f"{agents.path} has 0 robots; expected at least one{hint}")
     if main.num_robots is not None and main.num_robots != len(agents.robots):
         raise ScenarioError(
-            f"{agents.path} has {len(agents.robots)} robots; expected {main.num_robots}, "
+            f"{agents.path} has {counted(len(agents.robots), 'robot')}; expected {main.num_robots}, "
             f"the number in line 1 of {main.path}"
         )
     for each in (main.map, *main.tasks, agents.map, *agents.robots):

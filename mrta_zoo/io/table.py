@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import MrtaError
 from mrta_zoo.io.source import StrPath, read_text, shown
 
@@ -34,7 +35,7 @@ def read_table(path: StrPath, error: type[MrtaError]) -> list[tuple[str, list[st
                 _check_separator(where, stripped, error)
             if table and len(cells) != len(table[0][1]):
                 raise error(
-                    f"{where}: {shown(','.join(cells))} has {len(cells)} cells; "
+                    f"{where}: {shown(','.join(cells))} has {counted(len(cells), 'cell')}; "
                     f"expected {len(table[0][1])} as in the header"
                 )
             table.append((where, stripped))

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from mrta_zoo.counted import counted
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, assemble, in_id_order
 from mrta_zoo.io.source import StrPath, count, number, read_text, shown, write_text
@@ -69,7 +70,7 @@ def read_task_part(path: StrPath) -> Part:
     (first, header), *lines = _lines(path)
     if len(header) not in (3, 4):
         raise ScenarioError(
-            f"{first}: header {shown(' '.join(header))} has {len(header)} fields; "
+            f"{first}: header {shown(' '.join(header))} has {counted(len(header), 'field')}; "
             "expected 'm dx dy' or 'n m dx dy' (m tasks, n agents, map size)"
         )
     num_robots = count(header[0], first, "number of agents", ScenarioError) if len(header) == 4 else None
@@ -104,7 +105,7 @@ def read_agent_part(path: StrPath) -> Part:
     if len(header) != 3:
         hint = "; is this a task file?" if len(header) == 4 else ""
         raise ScenarioError(
-            f"{first}: header {shown(' '.join(header))} has {len(header)} fields; "
+            f"{first}: header {shown(' '.join(header))} has {counted(len(header), 'field')}; "
             f"expected 'n dx dy' (n agents, map size){hint}"
         )
     num_robots = count(header[0], first, "number of agents", ScenarioError)
@@ -183,7 +184,7 @@ def _lines(path: StrPath) -> list[tuple[str, list[str]]]:
 def _check_fields(where: str, fields: list[str], expected: str, hint: str) -> None:
     if len(fields) != len(expected.split()):
         raise ScenarioError(
-            f"{where}: {shown(' '.join(fields))} has {len(fields)} fields; "
+            f"{where}: {shown(' '.join(fields))} has {counted(len(fields), 'field')}; "
             f"expected {len(expected.split())} ({expected}){hint}"
         )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from rich.cells import cell_len
 
+from mrta_zoo.counted import counted
 from mrta_zoo.mission import Mission
 from mrta_zoo.render.whereabouts import whereabouts
 from mrta_zoo.rules import Status
@@ -17,7 +18,8 @@ def headline(mission: Mission) -> str:
     counts = np.bincount(mission.status, minlength=len(Status))
     tasks = ", ".join(f"{counts[status]} {status.name.lower()}" for status in Status)
     over = "   mission over" if mission.done else ""
-    return f"{mission.scenario.name}   time {mission.time:.1f}   {mission.scenario.num_tasks} tasks: {tasks}{over}"
+    number = counted(mission.scenario.num_tasks, "task")
+    return f"{mission.scenario.name}   time {mission.time:.1f}   {number}: {tasks}{over}"
 
 
 def describe(mission: Mission) -> str:

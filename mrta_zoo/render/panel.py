@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mrta_zoo.counted import counted
 from mrta_zoo.mission import Mission
 from mrta_zoo.palette import FAINT, INK, MISSED, URGENCY, blend, robot_colour
 from mrta_zoo.render.canvas import Canvas, fitted, text_width
@@ -31,7 +32,7 @@ def draw_panel(canvas: Canvas, mission: Mission, doing: Sequence[str], left: flo
     _draw_legend(canvas, mission, left)
     top = _TOP + _LEGEND_ROWS * _ROW + 14
     robots = mission.scenario.num_robots
-    canvas.text(f"{robots} robot{'s' * (robots != 1)}", (left, top), 17, FAINT)
+    canvas.text(counted(robots, "robot"), (left, top), 17, FAINT)
     listed = min(robots, _MOST_LISTED)
     columns = 1 if listed <= _ONE_COLUMN else 2
     rows = -(-listed // columns)
@@ -58,7 +59,7 @@ def _draw_legend(canvas: Canvas, mission: Mission, left: float) -> None:
     horizon = float(scenario.deadline.max())
     tasks = scenario.num_tasks
     mark, text = left + 11, left + 29
-    canvas.text(f"{tasks} task{'s' * (tasks != 1)}", (left, _TOP), 17, FAINT)
+    canvas.text(counted(tasks, "task"), (left, _TOP), 17, FAINT)
     rows = [_TOP + (row + 1) * _ROW for row in range(_LEGEND_ROWS)]
     canvas.disc((mark, rows[0]), 6.0, blend(URGENCY, 0.4), FAINT, 1.2)
     canvas.text(f"{counts[Status.ACTIVE]} active, by time left to their deadlines:", (text, rows[0]), 17, INK)
@@ -84,7 +85,7 @@ def _sentence(mission: Mission, robot: int, doing: str) -> str:
     what = {
         "acting": "chooses now",
         "waiting": "is free",
-        "retired": f"retired after {len(mission.routes[robot])} tasks",
+        "retired": f"retired after {counted(len(mission.routes[robot]), 'task')}",
         "travelling": f"to task {{task}}, done at {until:.1f}, due {deadline[task]:.1f}",
         "working": f"at task {{task}} until {until:.1f}, due {deadline[task]:.1f}",
     }[doing]

@@ -8,6 +8,7 @@ const WHOLE_PLAY = 40; // seconds that an episode takes at speed 1
 const MANY_ROBOTS = 20; // with more there is less text, and trails are cut
 
 const byId = (id) => document.getElementById(id);
+const counted = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
 const robotColour = (robot) => colours.robots[robot % colours.robots.length];
 const horizon = Math.max(...place.tasks.map((task) => task[2]));
 const end = Math.max(horizon, ...episodes.map((episode) => episode.makespan));
@@ -170,7 +171,8 @@ function draw() {
 }
 
 document.querySelector("h1").textContent = place.name;
-byId("about").textContent = `${place.tasks.length} tasks, ${place.robots.length} robots, mask rule ` +
+byId("about").textContent = `${counted(place.tasks.length, "task")}, ` +
+  `${counted(place.robots.length, "robot")}, mask rule ` +
   [...new Set(episodes.map((episode) => episode.mask_rule))].join(" and ") +
   `; cost by ${cost}`;
 document.querySelector("main").className = `${episodes.length > 1 ? "pair" : ""} ${many ? "many" : ""}`;

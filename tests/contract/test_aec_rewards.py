@@ -114,7 +114,7 @@ def test_own_reward_function():
     _, returns = play(pickle.loads(pickle.dumps(env)))
     assert set(returns) == {"robot_0", "robot_1"}
     assert returns["robot_0"] == returns["robot_1"]
-    with pytest.raises(ConfigError, match="gave 1 numbers; expected 2, one for each robot"):
+    with pytest.raises(ConfigError, match="gave 1 number; expected 2, one for each robot"):
         started(scenario=scenario, reward=lambda mission, finished: [0.0])
 
 

@@ -99,7 +99,7 @@ def test_a_plan_that_has_been_left_advises_what_can_still_be_done() -> None:
 def test_what_cannot_be_recorded() -> None:
     with pytest.raises(ConfigError, match="there is no method 'nearst'"):
         record(SCENARIO, "nearst")
-    with pytest.raises(PlanError, match="has 1 routes"):
+    with pytest.raises(PlanError, match="has 1 route"):
         record(SCENARIO, Plan(((0,),)))
 
     class Illegal:

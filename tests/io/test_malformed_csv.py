@@ -108,7 +108,7 @@ BAD_AGENT_TABLES = [
         "line 2: map is 100 x 51; expected 100 x 50 as in",
     ),
     ("kind,x,y,capacity\nmap,100,50,\n", "has 0 robots; expected at least one"),
-    ("kind,x,y,capacity\nrobot,1,1,1\n", "has 1 robots; expected 2, the number in line 1 of"),
+    ("kind,x,y,capacity\nrobot,1,1,1\n", "has 1 robot; expected 2, the number in line 1 of"),
     ("kind,x,y,capacity\nrobot,1,1,1\nrobot,1,51,1\n", "line 3: y is 51.0; expected a number from 0 to 50"),
 ]
 

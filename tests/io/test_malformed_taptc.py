@@ -12,7 +12,7 @@ from mrta_zoo.io import read_scenario
 BAD_TASKS = [
     ("", "is empty; expected"),
     (" \n\t\n\r\n", "is empty; expected"),
-    ("hello\n", "line 1: header 'hello' has 1 fields; expected 'm dx dy' or 'n m dx dy'"),
+    ("hello\n", "line 1: header 'hello' has 1 field; expected 'm dx dy' or 'n m dx dy'"),
     ("3 100\n", "line 1: header '3 100' has 2 fields; expected"),
     ("1 2 3 100 50\n", "line 1: header '1 2 3 100 50' has 5 fields; expected"),
     (TASKS.removeprefix("2 3 100 50\n"), "line 1: header '0 1 2 20 255' has 5 fields; expected"),
@@ -93,7 +93,7 @@ BAD_AGENTS = [
         "line 2: '0 1 2 20 255' has 5 fields; expected 4 (id x y capacity); is this a task",
     ),
     (AGENTS.replace("2 100", "3 100"), "line 1: header says 3 agents; expected 2, the lines that follow"),
-    ("1 100 50\n0 9 10 2.0\n", "has 1 robots; expected 2, the number in line 1 of"),
+    ("1 100 50\n0 9 10 2.0\n", "has 1 robot; expected 2, the number in line 1 of"),
     (AGENTS.replace("100 50", "50 50"), "line 1: map is 50 x 50; expected 100 x 50 as in"),
     (AGENTS.replace("2.0", "0"), "line 2: capacity is '0'; expected a finite number > 0"),
     (AGENTS.replace("2.0", "2e-13"), "line 2: capacity is 2e-13; expected a number > 0, from 1e-12 to 1e+12"),

@@ -83,7 +83,7 @@ BAD_TRACES = [
     (TRACE.replace('"robot": 0', '"robot": 1'), "decisions[0].robot is 1; expected 0, by the rules"),
     (TRACE.replace('"task": 0', '"task": 2'), "decision 0: robot 0 chose task 2; tasks are numbered 0 to 1"),
     (TRACE.replace('"task": null', '"task": 0'), "decision 1: robot 0 may not choose task 0 at time 10: taken"),
-    (TRACE.replace('"task": 0', '"task": null'), "decision 1 comes after the end of the mission; expected 1 decisions"),
+    (TRACE.replace('"task": 0', '"task": null'), "decision 1 comes after the end of the mission; expected 1 decision"),
     (TRACE.replace('"advice": 1', '"advice": 2'), "decision 1 names task 2; tasks are numbered 0 to 1"),
     (TRACE.replace("[1, 0.25]", "[7, 0.25]"), "decision 0 names task 7; tasks are numbered 0 to 1"),
     (TRACE.replace("0.25", "1.25"), "decisions[0].probabilities[1][1] is 1.25; expected a number <= 1"),
