@@ -13,7 +13,7 @@ from tyro.conf import Positional, arg
 
 from mrta_zoo.counted import counted
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.eval.console import preparing, progress_bar, results_console, warn
+from mrta_zoo.eval.console import preparing, progress_bar, results_console, say, warn
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.rows import Row
@@ -149,17 +149,15 @@ def solve_command(argv: Sequence[str]) -> None:
                 "picture", command.plot, lambda path: save_plan_picture(scenario, solved.plan, path, solved.score)
             )
         console = results_console()
-        console.print(
-            f"{scenario.name}: {scenario.size}, planned by {method} in {solved.seconds:.3f} s", soft_wrap=True
-        )
-        console.print(schedule_table(scenario, solved.score))
-        console.print(totals(solved.score), soft_wrap=True)
-        for line in missed(scenario, solved.plan, solved.score):  # folded between names: pieces of numbers are no use
-            console.print(line, soft_wrap=not console.is_terminal)
+        say(console, f"{scenario.name}: {scenario.size}, planned by {method} in {solved.seconds:.3f} s")
+        console.print(schedule_table(scenario, solved.score), crop=False)
+        say(console, totals(solved.score))
+        for line in missed(scenario, solved.plan, solved.score):
+            say(console, line)
         if known := proven(solved.score, solved.plan.bound):
-            console.print(known, soft_wrap=True)
+            say(console, known)
         for line in outputs.written:
-            console.print(line, soft_wrap=True)
+            say(console, line)
 
 
 def chosen_method(planning: PlanningFlags) -> str:
@@ -244,11 +242,11 @@ def eval_command(argv: Sequence[str]) -> None:
         console = results_console()
         best_known = {case.name: case.best_known for case in cases if case.best_known is not None}
         for table in summary_tables(rows, best_known):
-            console.print(table)
+            console.print(table, crop=False)
         if lost:
             console.print(records_text(rows), soft_wrap=True)
         for line in outputs.written:
-            console.print(line, soft_wrap=True)
+            say(console, line)
 
 
 def _files_of(cases: str) -> list[Path]:

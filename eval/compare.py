@@ -7,9 +7,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Annotated, Any
 
-from rich import box
 from rich.console import Group
-from rich.table import Table
 from rich.text import Text
 from tyro.conf import Positional, arg
 
@@ -19,10 +17,11 @@ from mrta_zoo.debug.called import called
 from mrta_zoo.debug.comparison import Alternative, Comparison, Fate, Outcome, Parting, compare
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.commands import TRAINED_HELP, PlanningFlags, agent_file, policy_files
-from mrta_zoo.eval.console import preparing, results_console
+from mrta_zoo.eval.console import preparing, results_console, say
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.plan_files import read_any_plan
+from mrta_zoo.eval.sheet import Sheet
 from mrta_zoo.io import read_scenario
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.strict_json import write_document
@@ -97,9 +96,12 @@ def compare_command(argv: Sequence[str]) -> None:
             outputs.write("comparison", command.out, lambda path: write_comparison(found, both, path))
         console = results_console()
         for part in report(found, (both[0], both[1]), command.rows):
-            console.print(part, soft_wrap=isinstance(part, str))
+            if isinstance(part, str):
+                say(console, part)
+            else:
+                console.print(part, crop=False)
         for line in outputs.written:
-            console.print(line, soft_wrap=True)
+            say(console, line)
 
 
 def _advisor(scenario: Scenario, name: str, planning: PlanningFlags) -> Advisor:
@@ -242,14 +244,9 @@ def _costs(found: Comparison, parting: Parting, methods: tuple[str, str]) -> lis
 
 
 def _listed(title: str, columns: Sequence[str], rows: Sequence[Sequence[object]], most: int) -> Group:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for index, column in enumerate(columns):
-        words = index == 0 and column == "method"
-        table.add_column(column, justify="left" if words else "right", overflow="fold")
-    for row in rows[:most]:
-        table.add_row(*(Text(_cell(value)) for value in row))
+    shown = [tuple(map(_cell, row)) for row in rows[:most]]
     more = [Text(f"and {len(rows) - most} more (--rows)")] if len(rows) > most else []
-    return Group(Text(title, style="bold"), *([table] if rows else []), *more)
+    return Group(Sheet(title, columns, shown, left=("method",)), *more)
 
 
 def _cell(value: object) -> str:

@@ -6,18 +6,17 @@ import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from rich import box
 from rich.console import Console
-from rich.table import Table
 
 from mrta_zoo import mrta_v0
 from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.commands import builtin_cases, run_with_progress
-from mrta_zoo.eval.console import results_console
+from mrta_zoo.eval.console import results_console, say
 from mrta_zoo.eval.plot_plan import save_plan_picture
 from mrta_zoo.eval.runner import solve_and_score
 from mrta_zoo.eval.schedule import totals
+from mrta_zoo.eval.sheet import Sheet
 from mrta_zoo.eval.solved_files import write_solved
 from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.extras import require
@@ -33,6 +32,7 @@ STEPS_SHOWN = 10
 COMPARED = ("random", "nearest", "edf", "capam", "capam-plus")
 STEPPED, DRAWN = "r13a3i00", "r13a7i00"
 """Cases of the built-in suite: one to step through, one to draw."""
+WHY = "why it is its turn"
 BARS = "▁▂▃▄▅▆▇█"
 
 
@@ -63,9 +63,9 @@ def run_demo(folder: Path, policy_name: str = "capam-plus") -> None:
         names = dict.fromkeys((*COMPARED, policy_name))
         rows = run_with_progress(cases, {name: make_solver(name) for name in names})
     for table in summary_tables(rows):
-        console.print(table)
+        console.print(table, crop=False)
     write_records(rows, folder / "rows.csv")
-    console.print(f"all rows: {folder / 'rows.csv'}", soft_wrap=True)
+    say(console, f"all rows: {folder / 'rows.csv'}")
 
     _heading(console, "3. A small policy learns from scratch by REINFORCE")
     with cpu_threads(1):  # a second one gains 18 %, at the price of other results
@@ -74,12 +74,12 @@ def run_demo(folder: Path, policy_name: str = "capam-plus") -> None:
     _heading(console, "4. A plan as a picture")
     with cpu_threads(1):
         solved = solve_and_score(make_solver(policy_name), scenarios[DRAWN])
-    console.print(f"{DRAWN} planned by {policy_name} in {solved.seconds:.3f} s:", soft_wrap=True)
-    console.print(totals(solved.score), soft_wrap=True)
+    say(console, f"{DRAWN} planned by {policy_name} in {solved.seconds:.3f} s:")
+    say(console, totals(solved.score))
     write_solved(solved, folder / "plan.json")
     save_plan_picture(scenarios[DRAWN], solved.plan, folder / "plan.png", solved.score)
-    console.print(f"routes and schedule: {(folder / 'plan.png').resolve()} (the data: plan.json)", soft_wrap=True)
-    console.print(f"\nThe demo took {time.perf_counter() - begun:.0f} s.")
+    say(console, f"routes and schedule: {(folder / 'plan.png').resolve()} (the data: plan.json)")
+    say(console, f"\nThe demo took {time.perf_counter() - begun:.0f} s.")
 
 
 def show_steps(console: Console, policy: Policy, scenario: Scenario, steps: int) -> None:
@@ -93,14 +93,8 @@ def show_steps(console: Console, policy: Policy, scenario: Scenario, steps: int)
     """
     env = mrta_v0.raw_env(scenario=scenario)
     env.reset()
-    console.print(
-        f"{scenario.name}: {scenario.size}",
-        soft_wrap=True,
-    )
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in ("time", "robot", "why it is its turn", "chose", "out of", "done at", "deadline"):
-        left = heading in ("robot", "why it is its turn")
-        table.add_column(heading, justify="left" if left else "right")
+    say(console, f"{scenario.name}: {scenario.size}")
+    rows: list[tuple[str, ...]] = []
     turns = 0
     for agent in env.agent_iter():
         observation, _, termination, truncation, info = env.last()
@@ -111,21 +105,19 @@ def show_steps(console: Console, policy: Policy, scenario: Scenario, steps: int)
         reason = why_now(env.mission)
         env.step(task)
         if turns < steps:
-            table.add_row(
-                f"{info['time']:.1f}",
-                agent,
-                reason,
-                f"task {task}",
-                str(int(observation["action_mask"].sum())),
-                f"{env.mission.finish[task]:.1f}",
-                f"{scenario.deadline[task]:g}",
-            )
+            rows.append(
+                (
+                    f"{info['time']:.1f}", agent, reason, f"task {task}", str(int(observation["action_mask"].sum())),
+                    f"{env.mission.finish[task]:.1f}", f"{scenario.deadline[task]:g}",
+                )
+            )  # fmt: skip
         turns += 1
-    console.print(table)
-    console.print(
+    headings = ("time", "robot", WHY, "chose", "out of", "done at", "deadline")
+    console.print(Sheet("", headings, rows, left=("robot", WHY), prose=WHY), crop=False)
+    say(
+        console,
         f"… and so on: after {counted(turns, 'turn')} no robot has a task left that it can finish in time; "
         f"{env.mission.completed()} of {counted(scenario.num_tasks, 'task')} are completed.",
-        soft_wrap=True,
     )
 
 
@@ -146,9 +138,9 @@ def show_training(console: Console, folder: Path) -> None:
 
     history = short_training(folder, console)
     completion = [each.completion for each in history]
-    console.print(
+    say(
+        console,
         f"validation completion {100 * completion[0]:.1f} % -> {100 * completion[-1]:.1f} %  {spark_line(completion)}",
-        soft_wrap=True,
     )
 
 
@@ -160,7 +152,7 @@ def spark_line(values: Sequence[float]) -> str:
 
 
 def _heading(console: Console, text: str) -> None:
-    console.print(f"\n{text}\n{'=' * len(text)}", soft_wrap=True)
+    say(console, f"\n{text}\n{'=' * len(text)}")
 
 
 def _listed(robots: Sequence[int]) -> str:

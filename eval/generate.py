@@ -15,7 +15,7 @@ from mrta_zoo.bounds import check_seed
 from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.case_folder import CaseFormat, write_case_folder
-from mrta_zoo.eval.console import results_console
+from mrta_zoo.eval.console import results_console, say
 from mrta_zoo.eval.flags import optional, parse
 from mrta_zoo.generators import make_generator
 
@@ -84,7 +84,7 @@ def generate_command(argv: Sequence[str]) -> None:
         for index in range(command.count)
     )
     write_case_folder(scenarios, command.out, command.format)
-    results_console().print(f"{counted(command.count, 'scenario')} written to {command.out}", soft_wrap=True)
+    say(results_console(), f"{counted(command.count, 'scenario')} written to {command.out}")
 
 
 def _bounds(text: str | None) -> tuple[float, float] | float | str | None:

@@ -12,7 +12,7 @@ from tyro.conf import Positional, arg
 from mrta_zoo.debug.recorder import record
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.commands import METHOD_HELP, PlanningFlags, agent_file, policy_files
-from mrta_zoo.eval.console import preparing, results_console
+from mrta_zoo.eval.console import preparing, results_console, say
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
 from mrta_zoo.eval.plan_files import check_name
@@ -94,8 +94,9 @@ def replay_command(argv: Sequence[str]) -> None:
         outputs.write("page", command.out, lambda path: write_replay(traces, path))
     shown = " and ".join(trace.method or "an unnamed method" for trace in traces)
     size = command.out.stat().st_size / 1e6
-    results_console().print(
-        f"{scenario.name}: {shown} replayed in {command.out} ({size:.1f} MB); open it in a browser", soft_wrap=True
+    say(
+        results_console(),
+        f"{scenario.name}: {shown} replayed in {command.out} ({size:.1f} MB); open it in a browser",
     )
 
 

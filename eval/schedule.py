@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from rich import box
-from rich.table import Table
-
 from mrta_zoo.counted import counted
+from mrta_zoo.eval.sheet import Sheet
 from mrta_zoo.left_out import Reason, left_out
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
@@ -17,28 +15,20 @@ WHY: dict[Reason, str] = {
 }
 
 
-def schedule_table(scenario: Scenario, score: Score) -> Table:
+def schedule_table(scenario: Scenario, score: Score) -> Sheet:
     """A row for each task that is done, robot by robot; times in time units. What has no name is counted from 0."""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in ("robot", "task", "arrival", "finish", "deadline", ""):
-        text = heading in ("robot", "") or (heading == "task" and bool(scenario.task_names))
-        named = heading in ("robot", "task")  # names are folded where there is no room for them, numbers never
-        table.add_column(heading, justify="left" if text else "right", no_wrap=not named, overflow="fold")
+    rows: list[tuple[str, ...]] = []
+    ends = []
     for robot, visits in enumerate(score.schedule):
         name = scenario.robot_name(robot)
         if not visits:
-            table.add_row(name, "-", "-", "-", "-", "stays where it is", end_section=True)
-        for index, visit in enumerate(visits):
-            table.add_row(
-                name,
-                scenario.task_name(visit.task),
-                f"{visit.arrival:.2f}",
-                f"{visit.finish:.2f}",
-                f"{visit.deadline:g}",
-                "" if visit.completed else "late",
-                end_section=index == len(visits) - 1,
-            )
-    return table
+            rows.append((name, "-", "-", "-", "-", "stays where it is"))
+        for visit in visits:
+            times = (f"{visit.arrival:.2f}", f"{visit.finish:.2f}", f"{visit.deadline:g}")
+            rows.append((name, scenario.task_name(visit.task), *times, "" if visit.completed else "late"))
+        ends.append(len(rows) - 1)
+    left = ("robot", "", *(("task",) if scenario.task_names else ()))
+    return Sheet("", ("robot", "task", "arrival", "finish", "deadline", ""), rows, left, ends)
 
 
 def proven(score: Score, bound: int | None) -> str:

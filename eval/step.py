@@ -22,7 +22,7 @@ from mrta_zoo.debug.stepper import Stepper
 from mrta_zoo.debug.terminal import interact, run_script
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.commands import METHOD_HELP, PlanningFlags
-from mrta_zoo.eval.console import preparing
+from mrta_zoo.eval.console import PIPED_WIDTH, preparing
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import optional, parse
 from mrta_zoo.eval.plan_files import read_any_plan
@@ -37,8 +37,6 @@ from mrta_zoo.trace import Trace
 
 NOBODY = "none"
 DEFAULT = "capam-plus"
-WIDTH = 80
-"""Columns of a script's output."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,7 +94,7 @@ def step_command(argv: Sequence[str]) -> None:
             else:
                 source, lines = script
                 console = Console(
-                    file=sys.stdout, width=WIDTH, no_color=True, markup=False, highlight=False, emoji=False
+                    file=sys.stdout, width=PIPED_WIDTH, no_color=True, markup=False, highlight=False, emoji=False
                 )
                 run_script(session, lines, source, console)
         finally:  # also after Ctrl-C

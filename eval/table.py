@@ -5,17 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from statistics import fmean
 
-from rich import box
-from rich.console import Group
-from rich.table import Table
-from rich.text import Text
-
 from mrta_zoo.eval.rows import Row
+from mrta_zoo.eval.sheet import Sheet
 
 Cell = Callable[[Sequence[Row]], str]
 
 
-def summary_tables(rows: Sequence[Row], best_known: Mapping[str, int] | None = None) -> list[Group]:
+def summary_tables(rows: Sequence[Row], best_known: Mapping[str, int] | None = None) -> list[Sheet]:
     """Mean completion, share of the best known plan, and planning time.
 
     Args:
@@ -38,19 +34,18 @@ def summary_tables(rows: Sequence[Row], best_known: Mapping[str, int] | None = N
     return tables
 
 
-def _table(title: str, rows: Sequence[Row], cell: Cell) -> Group:
+def _table(title: str, rows: Sequence[Row], cell: Cell) -> Sheet:
     methods = list(dict.fromkeys(row.method for row in rows))
     sizes = sorted({(row.tasks, row.robots) for row in rows})
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in ("tasks", "robots", "cases", *methods):
-        table.add_column(heading, justify="right", overflow="fold")
+    shown: list[tuple[str, ...]] = []
     for size in sizes:
         group = [row for row in rows if (row.tasks, row.robots) == size]
-        last = size == sizes[-1] and len(sizes) > 1
-        table.add_row(*map(str, size), *_cells(group, methods, cell), end_section=last)
+        shown.append((*map(str, size), *_cells(group, methods, cell)))
+    ends = []
     if len(sizes) > 1:
-        table.add_row("all", "", *_cells(rows, methods, cell))
-    return Group(Text(title, style="bold"), table)  # a table's own title is folded to the table's width
+        ends = [len(shown) - 1]
+        shown.append(("all", "", *_cells(rows, methods, cell)))
+    return Sheet(title, ("tasks", "robots", "cases", *methods), shown, ends=ends)
 
 
 def _cells(group: Sequence[Row], methods: Sequence[str], cell: Cell) -> list[str]:

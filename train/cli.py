@@ -17,6 +17,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 from mrta_zoo.bounds import MAX_THREADS, check_threads
 from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.eval.console import fitting, say
 from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.io.outputs import write_elsewhere
 from mrta_zoo.policies.cpu_threads import cpu_threads
@@ -158,11 +159,10 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
     if config.imitation_updates:
         imitated = f"{config.imitation_updates} of {counted(config.imitation_batch, 'plan')}, then "
     begins = f"goes on after update {run.update} of {total}" if run.update else counted(total, "update")
-    console.print(
+    say(
+        console,
         f"{folder}: {begins}, {imitated}of {config.scenarios} x {config.samples} episodes on {run.device}, "
         f"{parameters:,} parameters; validation on {counted(config.validation_scenarios, 'scenario', form=',')}",
-        highlight=False,
-        soft_wrap=True,
     )
     begun = time.perf_counter() - seconds
     first = run.update
@@ -178,7 +178,7 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
     with (
         # What an earlier session has shown beyond its last checkpoint comes again.
         SummaryWriter(str(folder / "tensorboard"), purge_step=first + 1 if run.history else 0) as board,
-        Progress(*columns, console=console, disable=not console.is_terminal) as progress,
+        Progress(*fitting(columns, console), console=console, disable=not console.is_terminal) as progress,
     ):
         bar = progress.add_task("", total=config.total_updates, completed=first, rate=0.0, completion="-")
         session = time.perf_counter()
@@ -201,18 +201,16 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
             shown = f"{100 * event.completion:.2f} %"
             progress.update(bar, completion=shown)
             note = "  (baseline replaced)" if event.baseline_replaced else ""
-            progress.console.print(
+            say(
+                progress.console,
                 f"update {event.update:>6}  episodes {event.episodes:>9,}  validation completion {shown}  "
                 f"cost {event.cost:.4f}  {now - begun:.0f} s{note}",
-                highlight=False,
-                soft_wrap=True,
             )
     best = run.best
-    console.print(
+    say(
+        console,
         f"Best validation completion {100 * best.completion:.2f} % at update {best.update}; "
         f"the policy is in {folder / 'policy.safetensors'}",
-        highlight=False,
-        soft_wrap=True,
     )
 
 

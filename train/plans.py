@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.eval.console import fitting, say
 from mrta_zoo.extras import require
 from mrta_zoo.train.child_process import pool_of
 from mrta_zoo.train.config import TrainConfig
@@ -45,9 +46,9 @@ def make_plans(config: TrainConfig, folder: Path, workers: int = 1, console: Con
         TextColumn("plans {task.completed}/{task.total}"), BarColumn(bar_width=None), TimeElapsedColumn(),
         TimeRemainingColumn(),
     )  # fmt: skip
-    console.print(f"{folder}: makes {missing * SHARD:,} plans to imitate", highlight=False, soft_wrap=True)
+    say(console, f"{folder}: makes {missing * SHARD:,} plans to imitate")
     with (
-        Progress(*columns, console=console, disable=not console.is_terminal) as progress,
+        Progress(*fitting(columns, console), console=console, disable=not console.is_terminal) as progress,
         pool_of(workers) as pool,
     ):
         bar = progress.add_task("", total=missing * SHARD)

@@ -8,13 +8,11 @@ from pathlib import Path
 from typing import Annotated
 
 import pandas as pd
-from rich import box
-from rich.table import Table
 from tyro.conf import arg
 
 from mrta_zoo.errors import ConfigError, MissingExtraError
 from mrta_zoo.eval.case_choice import read_all, shown_cases
-from mrta_zoo.eval.console import results_console
+from mrta_zoo.eval.console import results_console, say
 from mrta_zoo.eval.converge.curves import BudgetRow, curves_of, draw_curves
 from mrta_zoo.eval.experiment import make_manifest, measure, open_experiment, resumable
 from mrta_zoo.eval.figure_style import save_figure
@@ -23,6 +21,7 @@ from mrta_zoo.eval.machine import Session, this_session
 from mrta_zoo.eval.reproduce import wording
 from mrta_zoo.eval.rows_file import RowsFile
 from mrta_zoo.eval.runner import Solved, row_of
+from mrta_zoo.eval.sheet import Sheet
 from mrta_zoo.io import Case
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.source import write_text
@@ -108,22 +107,28 @@ def converge_command(argv: Sequence[str]) -> None:
 
 def _tell(curves: pd.DataFrame, outputs: Outputs) -> None:
     console = results_console()
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in ("tasks", "method", "budget, s", "measured, s", f"completed, mean % [{wording.INTERVAL}]", "cases"):
-        table.add_column(heading, justify="left" if heading == "method" else "right")
-    for line in curves.to_dict("records"):
-        table.add_row(
-            str(line["tasks"]), line["method"], _number(line["budget"]), f"{line['mean_seconds']:.3f}",
-            f"{line['mean_percent']:.1f} [{_ends(line)}]", str(line["cases"]),
-        )  # fmt: skip
-    console.print(table)
     console.print(
+        Sheet(
+            "",
+            ("tasks", "method", "budget, s", "measured, s", f"completed, mean % [{wording.INTERVAL}]", "cases"),
+            [
+                (
+                    str(line["tasks"]), line["method"], _number(line["budget"]), f"{line['mean_seconds']:.3f}",
+                    f"{line['mean_percent']:.1f} [{_ends(line)}]", str(line["cases"]),
+                )
+                for line in curves.to_dict("records")
+            ],
+            left=("method",),
+        ),
+        crop=False,
+    )  # fmt: skip
+    say(
+        console,
         "Intervals are over cases, which are the same for all methods: a difference between two methods can be sure "
         "even where their intervals overlap (mrta-zoo reproduce tests it).",
-        soft_wrap=True,
     )
     for line in outputs.written:
-        console.print(line, soft_wrap=True)
+        say(console, line)
 
 
 def _measure(

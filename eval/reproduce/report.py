@@ -10,7 +10,7 @@ import jinja2
 from markupsafe import Markup, escape
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.console import results_console
+from mrta_zoo.eval.console import results_console, say
 from mrta_zoo.eval.figure_style import save_figure
 from mrta_zoo.eval.reproduce.parts import Report
 from mrta_zoo.io.outputs import Outputs
@@ -49,9 +49,9 @@ def publish(report: Report, folder: Path) -> None:
         outputs.write("report", folder / "report.html", lambda path: write_report(report, path.parent))
         console = results_console()
         for point in report.summary:
-            console.print(f"- {point}", soft_wrap=True)
+            say(console, f"- {point}")
         for line in outputs.written:
-            console.print(line, soft_wrap=True)
+            say(console, line)
 
 
 def render(report: Report, suffix: str, folder: Path) -> str:

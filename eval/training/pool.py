@@ -13,7 +13,7 @@ import torch
 from rich.console import Console
 
 from mrta_zoo.counted import counted
-from mrta_zoo.eval.console import progress_bar
+from mrta_zoo.eval.console import progress_bar, say
 from mrta_zoo.eval.training.job import Job, perform
 from mrta_zoo.train.child_process import pool_of
 
@@ -41,7 +41,7 @@ def train_all(jobs: Sequence[Job], missing: Sequence[Job], workers: int) -> None
                 line = (
                     f"{job.variant}, seed {job.seed}: trained and compared ({finished} of {counted(len(jobs), 'run')})"
                 )
-                (progress.console if progress.console.is_terminal else console).print(line, soft_wrap=True)
+                say(progress.console if progress.console.is_terminal else console, line)
 
         perform_all(missing, workers, report)
 

@@ -48,12 +48,21 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Listing:
-    """A table: its title, its columns, those whose text begins at the left, and the rows."""
+    """A table, whose last column is text.
+
+    Attributes:
+        title: above it.
+        columns: their names.
+        left: those whose text begins at the left.
+        rows: the lines.
+        spare: the columns to leave out, one after the other, where there is no room.
+    """
 
     title: str
     columns: tuple[str, ...]
     left: tuple[str, ...]
     rows: Sequence[Row]
+    spare: tuple[str, ...] = ()
 
 
 def listing(stepper: Stepper, view: View, commands: Sequence[tuple[str, str]]) -> Listing:
@@ -100,7 +109,8 @@ def _tasks(stepper: Stepper, view: View) -> Listing:
     title = f"{scenario.robot_name(robot)} may choose {choices} of {counted(len(rows), 'task')}{when}"
     numbers = ("dist", "travel", "finish", "slack", "due", *(("prob %",) if probable else ()))
     tasks = headings("task", scenario.task_names)
-    return Listing(title, ("", *tasks, *numbers, ""), _texts(tasks, scenario.task_names), rows)
+    spare = ("dist", "travel", "due", "finish")
+    return Listing(title, ("", *tasks, *numbers, ""), _texts(tasks, scenario.task_names), rows, spare)
 
 
 def _robots(stepper: Stepper) -> Listing:
@@ -123,7 +133,8 @@ def _robots(stepper: Stepper) -> Listing:
         rows.append(Row(row, "advised" if now.doing == "acting" else "faint" if now.doing == "retired" else "plain"))
     robots = headings("robot", scenario.robot_names)
     columns = (*robots, "place", "capacity", "speed", "taken", "free at", "choices", "")
-    return Listing(counted(len(rows), "robot"), columns, _texts(robots, scenario.robot_names), rows)
+    spare = ("speed", "place", "capacity", "taken", "choices")
+    return Listing(counted(len(rows), "robot"), columns, _texts(robots, scenario.robot_names), rows, spare)
 
 
 def _log(stepper: Stepper) -> Listing:
@@ -147,7 +158,7 @@ def _log(stepper: Stepper) -> Listing:
     columns = ("decision", "time", "robot", "task", "finish", "slack", "")
     texts = (*_texts(("robot",), scenario.robot_names), *_texts(("task",), scenario.task_names))
     title = f"{counted(len(rows), 'decision')} so far, the last one first"
-    return Listing(title, columns, texts, rows[::-1])
+    return Listing(title, columns, texts, rows[::-1], ("time", "finish", "slack", "robot"))
 
 
 def _texts(headings: tuple[str, ...], names: Sequence[str]) -> tuple[str, ...]:

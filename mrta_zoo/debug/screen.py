@@ -10,7 +10,9 @@ from rich.table import Table
 from rich.text import Text
 
 from mrta_zoo.debug.called import called, shortened
+from mrta_zoo.debug.pages import Listing
 from mrta_zoo.debug.session import Session
+from mrta_zoo.fold import clipped
 from mrta_zoo.rules import Status
 from mrta_zoo.scenario import Scenario
 
@@ -21,15 +23,15 @@ BETWEEN = 2
 """Columns between two of a table."""
 STYLES = {"advised": "bold green", "made": "yellow", "plain": "", "faint": "bright_black"}
 NEXT_SHOWN = 8
-NOTE, NAME = 24, 10
-"""Columns that notes keep until names are cut, and that names keep until notes are cut further."""
+NOTE, NAME, LEAST_NOTE = 24, 10, 12
+"""Columns that notes keep until names are cut, that names keep until notes are cut further, and that notes keep."""
 
 
 def screen(session: Session, rows: int, width: int, message: str = "") -> Group:
     """Everything there is to be seen, in so many columns and with so many rows of the table that is looked at."""
-    parts: list[RenderableType] = [*header(session), Text()]
+    parts: list[RenderableType] = [*header(session, width), Text()]
     parts += table(session, rows, width)
-    parts.append(Text(message, style="bold", no_wrap=True, overflow="ellipsis"))
+    parts.append(Text(clipped(message, width), style="bold"))
     return Group(*parts)
 
 
@@ -38,7 +40,7 @@ def fit(console: Console) -> int:
     return max(console.height - AROUND, LEAST_ROWS)
 
 
-def header(session: Session) -> list[RenderableType]:
+def header(session: Session, width: int) -> list[RenderableType]:
     """Four lines: the mission, how it stands, who is to choose and what its policy thinks, and who is next."""
     stepper = session.stepper
     mission, scenario = stepper.mission, stepper.scenario
@@ -59,7 +61,7 @@ def header(session: Session) -> list[RenderableType]:
         lines += [(session.where(), "bold"), ("", "")]
     else:
         lines += [(_turn(session), "bold cyan"), (_queue(session), "bright_black")]
-    return [Text(line, style=style, no_wrap=True, overflow="ellipsis") for line, style in lines]
+    return [Text(clipped(line, width), style=style) for line, style in lines]
 
 
 def table(session: Session, rows: int, width: int) -> list[RenderableType]:
@@ -70,23 +72,40 @@ def table(session: Session, rows: int, width: int) -> list[RenderableType]:
     shown = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
     first = view.page * rows
     page = listing.rows[first : first + rows]
-    widths = [
-        max(cell_len(cell) for cell in (column, *(row.cells[index] for row in listing.rows)))
-        for index, column in enumerate(listing.columns)
-    ]
-    over = sum(widths) + BETWEEN * (len(widths) - 1) - width
-    last = len(widths) - 1
-    texts = [index for index, column in enumerate(listing.columns) if column in listing.left and index < last]
-    for index, least in ((last, NOTE), *((text, NAME) for text in texts), (last, 1)):
-        cut = min(max(over, 0), max(widths[index] - least, 0))
-        widths[index], over = widths[index] - cut, over - cut
-    for column, needed in zip(listing.columns, widths, strict=True):
-        left = column in listing.left
-        shown.add_column(column, justify="left" if left else "right", no_wrap=True, overflow="ellipsis", width=needed)
+    widths = column_widths(listing, width)
+    for index, needed in widths.items():
+        column = listing.columns[index]
+        shown.add_column(column, justify="left" if column in listing.left else "right", no_wrap=True, width=needed)
     for row in page:
-        shown.add_row(*(Text(cell) for cell in row.cells), style=STYLES[row.tone])
+        *cells, note = (row.cells[index] for index in widths)
+        shown.add_row(*map(Text, cells), Text(clipped(note, [*widths.values()][-1])), style=STYLES[row.tone])
     foot = f"page {view.page + 1} of {pages}" + ("" if view.page == pages - 1 else ", n: next") if pages > 1 else ""
-    return [Text(listing.title, style="italic"), shown, Text(foot, style="bright_black")]
+    title, foot = (clipped(text, width) for text in (listing.title, foot))
+    return [Text(title, style="italic"), shown, Text(foot, style="bright_black")]
+
+
+def column_widths(listing: Listing, width: int) -> dict[int, int]:
+    """The columns that there is room for, with their widths.
+
+    Numbers have what they need. Where there is no room, first the notes in the last column are cut, then names; then
+    columns are left out, those that can be spared first.
+    """
+    widths = {
+        index: max(cell_len(cell) for cell in (column, *(row.cells[index] for row in listing.rows)))
+        for index, column in enumerate(listing.columns)
+    }
+    last = len(widths) - 1
+    names = [index for index, column in enumerate(listing.columns) if column in listing.left and 0 < index < last]
+
+    def over() -> int:
+        return max(0, sum(widths.values()) + BETWEEN * (len(widths) - 1) - width)
+
+    for index, least in ((last, NOTE), *((name, NAME) for name in names), (last, LEAST_NOTE)):
+        widths[index] -= min(over(), max(widths[index] - least, 0))
+    for column in (*listing.spare, listing.columns[last]):
+        if over():
+            del widths[last if column == listing.columns[last] else listing.columns.index(column)]
+    return widths
 
 
 def prompt(session: Session) -> str:

@@ -79,7 +79,7 @@ def run_script(session: Session, lines: Iterable[str], source: str, console: Con
             raise type(error)(f"{source}, line {number}: {error}") from None
         if session.over:
             break
-    _print(console, Group(*header(session)))
+    _print(console, Group(*header(session, console.width)))
 
 
 def _print(console: Console, what: RenderableType) -> None:

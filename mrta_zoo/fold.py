@@ -1,0 +1,29 @@
+"""Text in lines of a given width, in which no word, and so no number, is broken."""
+
+from __future__ import annotations
+
+import textwrap
+
+
+def fold(text: str, width: int, indent: str = "") -> list[str]:
+    """Lines of so many characters at most, unless a word is longer; one at least.
+
+    Args:
+        text: one line.
+        width: of the lines, >= 1.
+        indent: put before all lines but the first.
+    """
+    return textwrap.wrap(
+        text, max(width, 1), subsequent_indent=indent, replace_whitespace=False, break_long_words=False,
+        break_on_hyphens=False,
+    ) or [""]  # fmt: skip
+
+
+def clipped(text: str, width: int) -> str:
+    """As many words as there is room for, with a mark if these are not all."""
+    if len(text) <= width:
+        return text
+    words = fold(text, width - 1)[0]
+    if words[-1:].isdigit():  # which must not look cut
+        words = fold(text, width - 2)[0] + " "
+    return f"{words}…"
