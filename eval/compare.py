@@ -15,6 +15,7 @@ from mrta_zoo.counted import counted
 from mrta_zoo.debug.advisors import Advisor, make_advisor
 from mrta_zoo.debug.called import called
 from mrta_zoo.debug.comparison import Alternative, Comparison, Fate, Outcome, Parting, compare
+from mrta_zoo.debug.percent import percent
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.commands import TRAINED_HELP, PlanningFlags, agent_file, policy_files
 from mrta_zoo.eval.console import preparing, results_console, say
@@ -213,7 +214,7 @@ def _fate(fate: Fate, index: int, scenario: Scenario) -> str:
 
 def _parted(parting: Parting, methods: tuple[str, str], scenario: Scenario) -> Group:
     def row(method: str, choice: Alternative) -> tuple[object, ...]:
-        likely = [None if each is None else f"{100 * each:.1f}" for each in choice.probabilities]
+        likely = [None if each is None else percent(each) for each in choice.probabilities]
         return method, _task(choice.task, scenario), choice.distance, choice.finish, choice.slack, *likely
 
     return _listed(

@@ -21,11 +21,13 @@ from mrta_zoo.policies.protocol import Policy, Solver
 from mrta_zoo.policies.registry import LearnedSolver, PolicySolver, make_solver
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
-from mrta_zoo.trace import Choice, tightest_rule
+from mrta_zoo.trace import TOLERANCE, Choice, tightest_rule
 from mrta_zoo.world import as_action
 
-LEAST, DIGITS = 1e-4, 6
-"""Probabilities below are left out of a choice, the others rounded."""
+LEAST, FEW = 1e-4, 10
+"""Probabilities below are left out of a choice, unless they are among the few that are greatest."""
+DIGITS = 6
+"""Of a probability that is kept, and of what the likeliest task's lacks to 1."""
 
 
 class Thought(Protocol):
@@ -222,7 +224,15 @@ def _fork(policy: Policy) -> Policy:
 
 
 def _sparse(probabilities: npt.NDArray[np.floating]) -> dict[int, float]:
-    """Those that are not next to nothing, likeliest first."""
-    (tasks,) = np.nonzero(probabilities >= LEAST)
-    order = tasks[np.argsort(-probabilities[tasks], kind="stable")]
-    return {int(task): round(float(probabilities[task]), DIGITS) for task in order}
+    """Those that are not next to nothing, and a few that are, likeliest first.
+
+    The likeliest has what the others leave, which float32 may round to nothing.
+    """
+    values = probabilities.astype(np.float64)
+    order = np.argsort(-values, kind="stable")
+    kept = [int(task) for rank, task in enumerate(order) if values[task] > (0.0 if rank < FEW else LEAST)]
+    sparse = {task: float(f"{values[task]:.{DIGITS}g}") for task in kept}
+    if kept and values[kept[0]] > 0.5 and abs(values.sum() - 1) < TOLERANCE:
+        rest = float(np.delete(values, kept[0]).sum())
+        sparse[kept[0]] = 1 - float(f"{rest:.{DIGITS}g}")
+    return sparse

@@ -9,6 +9,7 @@ from typing import Literal
 from mrta_zoo.counted import counted
 from mrta_zoo.debug.called import called, cells, headings
 from mrta_zoo.debug.outlook import SortKey
+from mrta_zoo.debug.percent import percent
 from mrta_zoo.debug.stepper import Stepper
 from mrta_zoo.render.whereabouts import whereabouts
 from mrta_zoo.rules import MaskReason
@@ -88,9 +89,10 @@ def _tasks(stepper: Stepper, view: View) -> Listing:
     advice, made = (stepper.advice, stepper.made) if own else (None, None)
     probable = advice is not None and advice.probabilities is not None
     rows, scenario = [], stepper.scenario
+    choices = int(stepper.mission.mask(robot).sum())
     for each in stepper.outlook(robot, view.order):
         advised, chosen = advice is not None and each.task == advice.task, made is not None and each.task == made.task
-        share = "" if each.probability is None else f"{100 * each.probability:.1f}"
+        share = "" if each.probability is None else percent(each.probability, only=choices == 1)
         free = each.reason == MaskReason.CHOOSABLE
         row = (
             ("*" if chosen else "") + (">" if advised else ""),
@@ -104,7 +106,6 @@ def _tasks(stepper: Stepper, view: View) -> Listing:
             str(each),
         )
         rows.append(Row(row, "advised" if advised else "made" if chosen else "plain" if free else "faint"))
-    choices = int(stepper.mission.mask(robot).sum())
     when = "" if own else " when it is next free"
     title = f"{scenario.robot_name(robot)} may choose {choices} of {counted(len(rows), 'task')}{when}"
     numbers = ("dist", "travel", "finish", "slack", "due", *(("prob %",) if probable else ()))

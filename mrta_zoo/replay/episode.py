@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from mrta_zoo.debug.outlook import outlook
+from mrta_zoo.debug.percent import percent
 from mrta_zoo.mission import Mission
 from mrta_zoo.rules import MaskReason, Status
 from mrta_zoo.scenario import Scenario
@@ -41,6 +42,7 @@ class Candidate(msgspec.Struct, frozen=True, array_like=True):
         reason: a `rules.MaskReason`.
         note: who has it or else could do it, or why it may not be chosen.
         probability: the policy's; None if it has none.
+        percent: the same in words.
     """
 
     task: int
@@ -49,6 +51,7 @@ class Candidate(msgspec.Struct, frozen=True, array_like=True):
     reason: int
     note: str
     probability: float | None
+    percent: str
 
 
 class Decision(msgspec.Struct, frozen=True):
@@ -147,6 +150,7 @@ def episode_of(trace: Trace) -> Episode:
 
 def _decision(mission: Mission, choice: Choice) -> Decision:
     reasons = mission.reasons(mission.actor)
+    open_to_it = int((reasons == MaskReason.CHOOSABLE).sum())
     return Decision(
         time=_short(mission.time),
         robot=mission.actor,
@@ -161,6 +165,7 @@ def _decision(mission: Mission, choice: Choice) -> Decision:
                 int(each.reason),
                 str(each),
                 None if each.probability is None else round(each.probability, 4),
+                "" if each.probability is None else percent(each.probability, only=open_to_it == 1),
             )
             for each in outlook(mission, mission.actor, choice.probabilities, _listed(mission, choice, reasons))
         ],

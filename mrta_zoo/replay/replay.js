@@ -99,13 +99,13 @@ class Side {
     );
   }
 
-  row([task, distance, finish, reason, note, probability], decision) {
+  row([task, distance, finish, reason, note, probability, percent], decision) {
     const due = place.tasks[task][2], chosen = task === decision.task;
     const notes = [task === decision.advice && "the policy's choice", note].filter(Boolean).join("; ");
     const row = element("tr", "", { class: chosen ? "chosen" : reason ? "barred" : "", "data-task": task });
     const likely = element("td", "", { class: "words likely" });
     if (probability !== null && !reason) {
-      likely.textContent = `${(100 * probability).toFixed(1)} %`;
+      likely.textContent = `${percent} %`;
       likely.style.setProperty("--share", `${100 * probability}%`);
     }
     const cells = [[task, ""], null, [number(distance), "wide"], [number(finish), ""], [number(due), "wide"],
