@@ -1,5 +1,7 @@
 """Multi-robot task allocation as a PettingZoo environment, with one CapAM policy shared by all robots."""
 
+from pathlib import Path
+
 from mrta_zoo.plan import Plan
 from mrta_zoo.registration import register
 from mrta_zoo.scenario import Scenario
@@ -8,3 +10,8 @@ __all__ = ["Plan", "Scenario"]
 __version__ = "0.1.0"
 
 register()
+
+# In a checkout, from which Python imports when it is started there, policies, train and eval lie beside this folder.
+_checkout = Path(__file__).parent.parent
+if not (_checkout / "mrta_zoo" / "policies").exists() and (_checkout / "policies" / "pretrained").is_dir():
+    __path__.append(str(_checkout))

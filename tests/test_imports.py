@@ -8,6 +8,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -157,3 +158,15 @@ def test_importing_the_package_is_cheap() -> None:
     code = f"import sys, mrta_zoo; print(*[name for name in {HEAVY} if name in sys.modules])"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT.parent)
     assert loaded.stdout.split() == []
+
+
+def test_a_checkout_that_is_not_installed_is_whole() -> None:
+    libraries = Path(np.__file__).parent.parent
+    code = (
+        f"import sys; sys.path.append({str(libraries)!r});"
+        "import mrta_zoo.policies.options, mrta_zoo.train, mrta_zoo.eval;"
+        "from mrta_zoo.policies.pretrained import pretrained_path;"
+        "print(mrta_zoo.policies.options.__file__, pretrained_path('capam').is_file())"
+    )
+    found = subprocess.run([sys.executable, "-S", "-c", code], capture_output=True, text=True, check=False, cwd=ROOT)
+    assert (found.stdout.split(), found.stderr) == ([str(ROOT / "policies" / "options.py"), "True"], "")
