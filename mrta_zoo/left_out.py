@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from mrta_zoo.plan import Plan
 from mrta_zoo.scales import in_time
 from mrta_zoo.scenario import Scenario
@@ -37,7 +39,7 @@ def left_out(scenario: Scenario, plan: Plan) -> tuple[LeftOut, ...]:
         scenario: what was planned.
         plan: its plan, which must fit it, see `verify.verify`.
     """
-    within_reach = in_time(scenario).any(axis=0)
+    within_reach = np.asarray(in_time(scenario).any(axis=0))
     taken = {task for route in plan.routes for task in route}
     return tuple(
         LeftOut(task, "others were worth more" if within_reach[task] else "out of reach")
