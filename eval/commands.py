@@ -126,10 +126,11 @@ def solve_command(argv: Sequence[str]) -> None:
         if output:
             check_destination(output)
     if command.plot:
-        from mrta_zoo.eval.plot_plan import check_picture_format, save_plan_picture
+        from mrta_zoo.eval.figure import check_format
+        from mrta_zoo.eval.plot_plan import save_plan_picture
 
         check_destination(command.plot)
-        check_picture_format(command.plot)
+        check_format(command.plot)
     destinations = {"--out": command.out, "--schedule": command.schedule, "--plot": command.plot}
     read = {"the task file": command.taskfile, "the agent file": agent_file(command.taskfile, command.agents)}
     method = command.method or chosen_method(command.planning)

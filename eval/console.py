@@ -1,10 +1,14 @@
-"""Where the command line prints: full width and plain if it is not a terminal; on one, lines break between words."""
+"""Where the command line prints: text as it is, without markup; full width and plain if it is not a terminal.
+
+On a terminal, lines break between words.
+"""
 
 from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
+from typing import Any
 
 from rich.console import Console
 from rich.progress import (
@@ -26,10 +30,34 @@ BAR_WIDTH = 72
 """Columns that a progress bar with times and rates needs."""
 
 
-def results_console() -> Console:
-    """Standard output, for results. Text is printed as it is: no markup, no highlighting."""
-    width = None if sys.stdout.isatty() else PIPED_WIDTH
-    return Console(file=sys.stdout, width=width, markup=False, highlight=False, emoji=False)
+class LiteralConsole(Console):
+    """A console that prints text as it is: names may look like markup, and control characters in them are spelt out.
+
+    Args:
+        options: of rich's `Console`.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(markup=False, highlight=False, emoji=False, **options)
+
+    def render_str(self, text: str, **options: Any) -> Text:
+        """The text, for every string that is printed or stands in a table."""
+        return super().render_str(spelt_out(text), **options)
+
+
+def spelt_out(text: str) -> str:
+    """The text with what would steer a terminal in the form that it has in Python."""
+    return "".join(c if c.isprintable() or c in "\n\t" else ascii(c)[1:-1] for c in text)
+
+
+def results_console() -> LiteralConsole:
+    """Standard output, for results."""
+    return LiteralConsole(file=sys.stdout, width=None if sys.stdout.isatty() else PIPED_WIDTH)
+
+
+def messages_console() -> LiteralConsole:
+    """Standard error, for progress and remarks."""
+    return LiteralConsole(file=sys.stderr)
 
 
 def say(console: Console, text: str) -> None:
@@ -37,7 +65,7 @@ def say(console: Console, text: str) -> None:
     for line in text.split("\n"):
         folded = fold(line, console.width) if console.is_terminal else [line]
         for each in folded:
-            console.print(Text(each), soft_wrap=True)
+            console.print(Text(spelt_out(each)), soft_wrap=True)
 
 
 def preparing(what: str = "preparing") -> AbstractContextManager[object]:
@@ -46,10 +74,11 @@ def preparing(what: str = "preparing") -> AbstractContextManager[object]:
     Args:
         what: is going on.
     """
-    console = Console(file=sys.stderr, markup=False, highlight=False, emoji=False)
+    console = messages_console()
     if not console.is_terminal:
         return nullcontext()
-    return console.status(f"{what} (local search, if any, is compiled at its first use, which can take a minute)")
+    # A string would be read as markup here, whatever the console.
+    return console.status(Text(f"{what} (local search, if any, is compiled at its first use, which can take a minute)"))
 
 
 def fitting(columns: Sequence[ProgressColumn], console: Console) -> Sequence[ProgressColumn]:
@@ -59,7 +88,7 @@ def fitting(columns: Sequence[ProgressColumn], console: Console) -> Sequence[Pro
 
 def progress_bar() -> Progress:
     """A bar on standard error that goes away when done; nothing at all if that is no terminal."""
-    console = Console(file=sys.stderr, markup=False, highlight=False, emoji=False)
+    console = messages_console()
     columns = (
         MofNCompleteColumn(),
         TextColumn("{task.description}", markup=False),

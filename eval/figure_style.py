@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from mrta_zoo.atomic import replacing
+from mrta_zoo.eval.figure import LiteralFigure
 
 INK, FAINT, GRID = "#22303c", "#5d6874", "#e3e7eb"
 
@@ -51,7 +52,7 @@ def style_of(method: str, methods: Sequence[str]) -> tuple[str, str]:
 def new_figure(width: float, height: float) -> Figure:
     """An empty figure, sides in inches."""
     layout = ConstrainedLayoutEngine(h_pad=0.06, w_pad=0.06, hspace=0.06, wspace=0.05)
-    return Figure(figsize=(width, height), facecolor="white", layout=layout)
+    return LiteralFigure(figsize=(width, height), facecolor="white", layout=layout)
 
 
 def plain(axes: Any, grid: str = "x") -> None:

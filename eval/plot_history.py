@@ -10,24 +10,15 @@ import io
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import tyro
 
-from mrta_zoo.atomic import replacing
 from mrta_zoo.errors import ConfigError, MrtaError
-from mrta_zoo.eval.destination import check_destination
-from mrta_zoo.eval.plot_plan import check_picture_format
-from mrta_zoo.extras import require
+from mrta_zoo.eval.destination import check_destination, check_distinct
+from mrta_zoo.eval.figure import Figure, LiteralFigure, check_format, save_picture
 from mrta_zoo.io.source import check_name, read_text
-from mrta_zoo.paths import suffix_of
 from mrta_zoo.render.style import plain
-
-try:
-    from matplotlib.figure import Figure
-except ImportError:
-    require("plot", "a picture")
-    raise
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,13 +46,14 @@ def read_history(path: Path) -> LearningCurve:
     """
     file = path / "history.csv" if path.is_dir() else path
     text = read_text(file, ConfigError, "a run's history.csv")
-    check_name(path.stem, str(path), "the run's name", ConfigError)
+    name = path.absolute().name if path.is_dir() else path.stem
+    check_name(name, str(path), "the run's name", ConfigError)
     try:
         rows = [row for row in csv.DictReader(io.StringIO(text)) if any(row.values())]
         if not rows:
             raise ValueError("it has no rows")
         return LearningCurve(
-            name=path.stem,
+            name=name,
             episodes=tuple(int(row["episodes"]) for row in rows),
             updates=tuple(int(row["update"]) for row in rows),
             completion=tuple(float(row["completion"]) for row in rows),
@@ -72,21 +64,24 @@ def read_history(path: Path) -> LearningCurve:
 
 def draw_history(curves: list[LearningCurve], by: Literal["episodes", "updates"] = "episodes") -> Figure:
     """Completion in percent against episodes or updates, one line a run; dots where plans are still imitated."""
-    figure = Figure(figsize=(8, 4.2), layout="constrained")
+    figure = LiteralFigure(figsize=(8, 4.2), layout="constrained")
     axes = figure.add_subplot()
+    named: list[tuple[Any, str]] = []  # to matplotlib itself, a label that begins with _ is none
     for curve, colour in zip(
         curves, ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9") * 9, strict=False
     ):
         along, percent = getattr(curve, by), [100 * each for each in curve.completion]
-        axes.plot(along, percent, label=curve.name, color=colour, linewidth=1.5)
+        (line,) = axes.plot(along, percent, color=colour, linewidth=1.5)
+        named.append((line, curve.name))
         imitated = sum(episodes == 0 for episodes in curve.episodes)
         if imitated > 1:
-            axes.plot(along[:imitated], percent[:imitated], "o", color=colour, label=f"{curve.name}: imitates plans")
+            (dots,) = axes.plot(along[:imitated], percent[:imitated], "o", color=colour)
+            named.append((dots, f"{curve.name}: imitates plans"))
     axes.set_xlabel("episodes sampled" if by == "episodes" else "updates")
     axes.set_ylabel("validation completion, %")
     axes.xaxis.set_major_formatter(lambda value, _: f"{value:,.0f}")
     plain(axes)
-    axes.legend(frameon=False, loc="lower right")
+    axes.legend(*zip(*named, strict=True), frameon=False, loc="lower right")
     return figure
 
 
@@ -100,18 +95,21 @@ def main(
 
     Args:
         runs: folders of runs, or copies of their history.csv.
-        out: the picture, .png, .svg or .pdf.
+        out: the picture: .png, .svg, .pdf…
         by: what goes along: episodes sampled, or updates.
+
+    Raises:
+        ConfigError: if a run has no history, or the picture cannot be written.
     """
     check_destination(out)
-    check_picture_format(out)
-    figure = draw_history([read_history(run) for run in runs], by)
-    with replacing(out) as partial:
-        figure.savefig(partial, format=suffix_of(out)[1:], dpi=130)
+    check_format(out)
+    check_distinct({"--out": out}, {f"the run {run}": run for run in runs})
+    save_picture(draw_history([read_history(run) for run in runs], by), out, dpi=130)
 
 
 if __name__ == "__main__":
     try:
         tyro.cli(main)
-    except (MrtaError, OSError) as error:
-        sys.exit(f"error: {error}")
+    except MrtaError as error:
+        print(f"error: {error}", file=sys.stderr)
+        sys.exit(2)

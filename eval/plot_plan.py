@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mrta_zoo.atomic import replacing
-from mrta_zoo.errors import ConfigError
+from mrta_zoo.eval.figure import Figure, LiteralFigure, save_picture
 from mrta_zoo.extras import require
 from mrta_zoo.palette import FAINT, INK, robot_colour
 from mrta_zoo.plan import Plan
@@ -21,9 +20,7 @@ from mrta_zoo.scenario import FloatArray, Scenario
 from mrta_zoo.verify import Score, verify
 
 try:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.collections import LineCollection
-    from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
@@ -31,6 +28,7 @@ try:
 except ImportError:
     require("plot", "a picture")
     raise
+
 
 LATE = "#000000"
 HEIGHT_PER_ROBOT, LEAST_HEIGHT, MOST_HEIGHT = 0.4, 6.4, 30.0
@@ -54,10 +52,9 @@ def draw_plan(scenario: Scenario, plan: Plan, score: Score | None = None) -> Fig
     """
     score = verify(scenario, plan) if score is None else score
     height = min(max(LEAST_HEIGHT, 1.4 + HEIGHT_PER_ROBOT * scenario.num_robots), MOST_HEIGHT)
-    figure = Figure(
+    figure = LiteralFigure(
         figsize=(17.0, height), dpi=110, facecolor="white", layout=ConstrainedLayoutEngine(h_pad=0.12, w_pad=0.12)
     )
-    FigureCanvasAgg(figure)
     chart_map, chart_time = figure.subplots(1, 2, width_ratios=(1.0, 1.75))
     _draw_map(chart_map, scenario, plan, score)
     _draw_time(chart_time, scenario, score)
@@ -66,30 +63,13 @@ def draw_plan(scenario: Scenario, plan: Plan, score: Score | None = None) -> Fig
 
 
 def save_plan_picture(scenario: Scenario, plan: Plan, path: Path, score: Score | None = None) -> None:
-    """Write the picture, whole or not at all, in the format that the suffix says: ``.png``, ``.svg``, ``.pdf``…
+    """Write the picture; see `figure.save_picture`.
 
     Raises:
-        ConfigError: if there is no such format, or the file cannot be written.
+        ConfigError: if there is no such format here, or the file cannot be written.
         PlanError: if the plan does not fit the scenario.
     """
-    check_picture_format(path)
-    figure = draw_plan(scenario, plan, score)
-    try:
-        with replacing(path) as partial:
-            figure.savefig(partial, format=path.suffix[1:].lower())
-    except OSError as error:
-        raise ConfigError(f"{path} cannot be written: {(error.strerror or str(error)).lower()}") from None
-
-
-def check_picture_format(path: Path) -> None:
-    """Make sure that pictures can be written in the format that the suffix says.
-
-    Raises:
-        ConfigError: if not.
-    """
-    known = FigureCanvasAgg.get_supported_filetypes()
-    if path.suffix[1:].lower() not in known:
-        raise ConfigError(f"{path} has the suffix {path.suffix!r}; expected one of .{', .'.join(sorted(known))}")
+    save_picture(draw_plan(scenario, plan, score), path)
 
 
 def _title(scenario: Scenario, plan: Plan, score: Score) -> str:

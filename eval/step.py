@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-from rich.console import Console
 from tyro.conf import Positional, arg
 
 from mrta_zoo.debug.advisors import Advisor, make_advisor
@@ -22,7 +21,7 @@ from mrta_zoo.debug.stepper import Stepper
 from mrta_zoo.debug.terminal import interact, run_script
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.commands import METHOD_HELP, PlanningFlags
-from mrta_zoo.eval.console import PIPED_WIDTH, preparing
+from mrta_zoo.eval.console import PIPED_WIDTH, LiteralConsole, preparing
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import optional, parse
 from mrta_zoo.eval.plan_files import read_any_plan
@@ -90,12 +89,10 @@ def step_command(argv: Sequence[str]) -> None:
         session = _begin(command)
         try:
             if script is None:
-                interact(session, Console(file=sys.stdout, markup=False, highlight=False, emoji=False))
+                interact(session, LiteralConsole(file=sys.stdout))
             else:
                 source, lines = script
-                console = Console(
-                    file=sys.stdout, width=PIPED_WIDTH, no_color=True, markup=False, highlight=False, emoji=False
-                )
+                console = LiteralConsole(file=sys.stdout, width=PIPED_WIDTH, no_color=True)
                 run_script(session, lines, source, console)
         finally:  # also after Ctrl-C
             if command.session and session.path:  # another one, if it was loaded

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
+from mrta_zoo.html import LITERAL
 from mrta_zoo.mission import Mission
 from mrta_zoo.observation import FloatTable
 from mrta_zoo.render import Viewer, describe, headline
@@ -65,7 +66,7 @@ class EnvBase:
         if not self._world.agents:
             return f"<pre>{escape(f'{self}: no mission yet; call reset()')}</pre>"
         if find_spec("pygame") is None:
-            return f"<pre>{escape(describe(self.mission))}</pre>"
+            return f'<pre class="{LITERAL}">{escape(describe(self.mission))}</pre>'
         from mrta_zoo.render.canvas import as_png  # pygame is heavy and optional
         from mrta_zoo.render.picture import draw
 

@@ -11,6 +11,8 @@ from mrta_zoo.palette import FAINT, GROUND, URGENCY, blend, robot_colour
 MOST_ROWS = 20
 """Of a table; the others are counted."""
 _SIDE = 320.0
+LITERAL = "tex2jax_ignore mathjax_ignore"
+"""The classes of elements in which notebooks leave dollar signs alone, which elsewhere they read as mathematics."""
 _CELL = "text-align:left;padding:2px 12px 2px 0"
 
 
@@ -23,7 +25,7 @@ def table(title: str, header: Sequence[str], rows: Iterable[Sequence[object]]) -
         rows: their values; of more than `MOST_ROWS` the first are shown.
     """
     every = list(rows)
-    lines = [f'<div><b>{escape(title)}</b></div><table style="border-collapse:collapse"><tr>']
+    lines = [f'<div class="{LITERAL}"><div><b>{escape(title)}</b></div><table style="border-collapse:collapse"><tr>']
     lines += [f'<th style="{_CELL}">{escape(name)}</th>' for name in header]
     lines.append("</tr>")
     for row in every[:MOST_ROWS]:
@@ -32,6 +34,7 @@ def table(title: str, header: Sequence[str], rows: Iterable[Sequence[object]]) -
     lines.append("</table>")
     if len(every) > MOST_ROWS:
         lines.append(f"<div>and {len(every) - MOST_ROWS} more</div>")
+    lines.append("</div>")
     return "".join(lines)
 
 

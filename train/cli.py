@@ -17,7 +17,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 from mrta_zoo.bounds import MAX_THREADS, check_threads
 from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.console import fitting, say
+from mrta_zoo.eval.console import fitting, messages_console, say
 from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.io.outputs import write_elsewhere
 from mrta_zoo.policies.cpu_threads import cpu_threads
@@ -152,7 +152,7 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
     """
     from torch.utils.tensorboard import SummaryWriter
 
-    console = console or Console(stderr=True)
+    console = console or messages_console()
     config = run.config
     parameters = sum(parameter.numel() for parameter in run.network.parameters())
     total, imitated = config.total_updates, ""

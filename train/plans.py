@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.console import fitting, say
+from mrta_zoo.eval.console import fitting, messages_console, say
 from mrta_zoo.extras import require
 from mrta_zoo.train.child_process import pool_of
 from mrta_zoo.train.config import TrainConfig
@@ -34,7 +34,7 @@ def make_plans(config: TrainConfig, folder: Path, workers: int = 1, console: Con
     if len(have) >= config.imitation_plans:
         return have
     require("solvers", "making plans to imitate")
-    console = console or Console(stderr=True)
+    console = console or messages_console()
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

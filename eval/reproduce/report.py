@@ -16,7 +16,10 @@ from mrta_zoo.eval.reproduce.parts import Report
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.source import write_text
 
-MARKDOWN = re.compile(r"([\\`*_{}\[\]|~])")
+MARKDOWN = re.compile(r"([\\`*_{}\[\]|~$]|^#|^[+-](?=[\s-]|$)|:(?=[\w+-]+:))")
+"""What could be markup: at any place, at the beginning of a line, and around the name of an emoji."""
+NUMBERED = re.compile(r"^(\d{1,9})([.)])(?=\s|$)")
+"""What begins a numbered list."""
 
 
 def write_report(report: Report, folder: Path) -> None:
@@ -75,4 +78,5 @@ def render(report: Report, suffix: str, folder: Path) -> str:
 
 def markdown(text: str) -> Markup:
     """Text that Markdown shows as it is: no tags, no emphasis, no cells of a table, one line."""
-    return Markup(MARKDOWN.sub(r"\\\1", str(escape(" ".join(str(text).split())))))
+    line = str(escape(" ".join(str(text).split())))
+    return Markup(NUMBERED.sub(r"\1\\\2", MARKDOWN.sub(r"\\\1", line)))

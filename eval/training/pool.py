@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import multiprocessing
 import queue
-import sys
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from typing import Any
 
 import torch
-from rich.console import Console
 
 from mrta_zoo.counted import counted
-from mrta_zoo.eval.console import progress_bar, say
+from mrta_zoo.eval.console import messages_console, progress_bar, say
 from mrta_zoo.eval.training.job import Job, perform
 from mrta_zoo.train.child_process import pool_of
 
@@ -28,7 +26,7 @@ _told: Any = None
 
 def train_all(jobs: Sequence[Job], missing: Sequence[Job], workers: int) -> None:
     """Do what is missing, with a bar if there is a terminal, and a line on standard error for each run that ends."""
-    console = Console(file=sys.stderr, markup=False, highlight=False, emoji=False)
+    console = messages_console()
     done = {job.folder: 1.0 for job in jobs if job not in missing}
     with progress_bar() as progress:
         bar = progress.add_task("runs", total=len(jobs), completed=len(done))

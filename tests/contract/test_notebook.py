@@ -74,7 +74,7 @@ def test_an_environment_without_pygame_is_text(monkeypatch):
     monkeypatch.setattr("mrta_zoo.env_base.find_spec", lambda name: None)
     env = mrta_v0.env(scenario=SCENARIO)
     env.reset()
-    assert shown(env).startswith("<pre>a &lt; b   time 0.0   2 tasks")
+    assert shown(env).startswith('<pre class="tex2jax_ignore mathjax_ignore">a &lt; b   time 0.0   2 tasks')
 
 
 def test_many_are_few_enough():
@@ -113,3 +113,9 @@ def test_a_map_may_lie_anywhere():
         map_size=(100, 50), map_origin=(5e6, 5e6),
     )  # fmt: skip
     assert '<circle cx="0.0" cy="96.0"' in shown(moved)  # as above
+
+
+def test_no_dollar_sign_is_mathematics():
+    plan = Plan.of([(0,), (1,)], "Budget $5 to $9")
+    for thing in (plan, SCENARIO, verify(SCENARIO, plan)):
+        assert shown(thing).startswith('<div class="tex2jax_ignore mathjax_ignore">')  # as MathJax 2, 3 and pandas know

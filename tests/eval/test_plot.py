@@ -80,6 +80,7 @@ def test_without_matplotlib_it_names_the_extra(module: str, monkeypatch: pytest.
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     for name in [name for name in sys.modules if name.startswith("matplotlib.")]:
         monkeypatch.setitem(sys.modules, name, None)
-    monkeypatch.delitem(sys.modules, f"mrta_zoo.{module}", raising=False)
+    for name in (module, "eval.figure"):
+        monkeypatch.delitem(sys.modules, f"mrta_zoo.{name}", raising=False)
     with pytest.raises(MissingExtraError, match=r'needs matplotlib.*pip install "mrta_zoo\[plot\]"'):
         importlib.import_module(f"mrta_zoo.{module}")
