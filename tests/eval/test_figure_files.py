@@ -81,5 +81,5 @@ def test_curves_are_not_begun_where_they_cannot_be_written(tmp_path: Path, out: 
 def test_curves_do_not_replace_what_they_are_drawn_from(tmp_path: Path) -> None:
     history = tmp_path / "history.png"
     history.write_text("update,episodes,completion\n0,0,0.25\n")
-    with pytest.raises(ConfigError, match="--out is .*, which is the run"):
+    with pytest.raises(ConfigError, match=r"--out is .*, which is the run"):
         plot_history((history,), out=history)
