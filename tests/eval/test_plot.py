@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +12,16 @@ import pytest
 
 pytest.importorskip("matplotlib")
 
+from matplotlib.collections import LineCollection
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from mrta_zoo.errors import ConfigError, MissingExtraError, PlanError
+from mrta_zoo.eval.plan_schedule import lanes
 from mrta_zoo.eval.plot_plan import draw_plan, save_plan_picture
 from mrta_zoo.generators import UniformGenerator
+from mrta_zoo.palette import GROUND, robot_colour
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.registry import make_solver
 from mrta_zoo.scenario import Scenario
@@ -49,6 +55,107 @@ def test_the_picture_says_what_the_plan_does() -> None:
 def test_late_tasks_are_marked_without_colour() -> None:
     times = draw_plan(SCENARIO, PLAN).axes[1]
     assert [bar.get_hatch() for bar in times.patches] == [None, "////"]
+
+
+def lines_to_deadlines(figure: Figure) -> list[list[list[float]]]:
+    """The ways from bars to deadlines: three corners each."""
+    times = figure.axes[1]
+    ways = [
+        way.tolist() for each in times.collections if isinstance(each, LineCollection) for way in each.get_segments()
+    ]
+    return [way for way in ways if len(way) == 3]
+
+
+def test_each_deadline_is_joined_to_its_task() -> None:
+    figure = draw_plan(SCENARIO, PLAN)
+    bars = {bar.get_x() + bar.get_width(): bar for bar in figure.axes[1].patches}
+    (early, early_corner, early_due), (late, late_corner, late_due) = lines_to_deadlines(figure)
+    assert (early[0], early_corner[0], early_due[0]) == (15, 15, 20)  # from the end of the bar to the deadline
+    assert early[1] == bars[15].get_y() + bars[15].get_height() < early_corner[1] == early_due[1]  # below it
+    assert (late[0], late_corner[0], late_due[0]) == (40, 40, 38)
+    assert late[1] == bars[40].get_y() > late_corner[1] == late_due[1]  # above it
+
+
+def test_ways_to_deadlines_do_not_cross() -> None:
+    assert lanes([1, 2, 3, 6], [5, 4, 9, 7]) == [0, 1, 2, 3]  # all side by side; the fourth begins under the third's
+    assert lanes([1, 2, 5, 6], [3, 9, 9, 7]) == [0, 1, 2, 3]
+    assert lanes([1, 4, 6], [3, 9, 7]) == [0, 0, 1]  # the first has ended when the second begins
+    rng = np.random.default_rng(0)
+    starts = np.sort(rng.random(60)) * 100
+    ends = starts + rng.exponential(20, 60)
+    found = lanes(starts.tolist(), ends.tolist())
+    for one in range(60):
+        for other in range(one + 1, 60):
+            if starts[other] <= ends[one]:  # what leads down to the other one must not meet this one
+                assert found[other] > found[one]
+
+
+def test_bars_that_touch_are_kept_apart() -> None:
+    two = Scenario(task_xy=[[5, 5], [5, 5]], deadline=[90, 90], workload=[30, 30], robot_xy=[[0, 5]], capacity=[1])
+    first, second = draw_plan(two, Plan.of([(0, 1)])).axes[1].patches
+    assert first.get_x() + first.get_width() == second.get_x() == 35
+    assert {to_hex(bar.get_edgecolor()) for bar in (first, second)} == {GROUND}
+    assert min(bar.get_linewidth() for bar in (first, second)) >= 1.0
+
+
+def test_a_mere_visit_is_seen() -> None:
+    visit = Scenario(task_xy=[[5, 5]], deadline=[90], workload=[0], robot_xy=[[0, 5]], capacity=[1])
+    (bar,) = draw_plan(visit, Plan.of([(0,)])).axes[1].patches
+    assert to_hex(bar.get_edgecolor()) == robot_colour(0)
+
+
+def test_names_are_where_they_fit_and_numbers_are_whole() -> None:
+    named = replace(
+        SCENARIO, task_names=("valve-A", "survey point of the north field", "C"), robot_names=("Spot", "R2")
+    )
+    routes, times = draw_plan(named, Plan.of([(0, 1, 2), ()])).axes
+    assert {"valve-A", "C"} <= {text.get_text() for text in routes.texts}
+    assert [label.get_text() for label in times.get_yticklabels()] == ["Spot\n1 of 3", "R2\n0 of 0"]
+    crowd = UniformGenerator(tasks=(150, 150), robots=(1, 1))(np.random.default_rng(0))
+    for axes in draw_plan(crowd, Plan.of([tuple(range(150))])).axes:
+        assert {text.get_text() for text in axes.texts} <= {*map(str, range(150)), ""}
+
+
+def test_the_height_follows_the_robots() -> None:
+    heights = []
+    for robots in (1, 3, 10, 20, 500):
+        scenario = UniformGenerator(tasks=(20, 20), robots=(robots, robots))(np.random.default_rng(0))
+        heights.append(draw_plan(scenario, Plan.of([[]] * robots)).get_figheight())
+    assert heights == sorted(heights)
+    assert heights[0] < 6.0
+    assert heights[3] > 1.7 * heights[2]
+    assert heights[-1] < 41.0
+
+
+@pytest.mark.parametrize("robots", [1, 3, 20])
+def test_nothing_lies_on_anything_else(robots: int) -> None:
+    scenario = UniformGenerator(tasks=(40, 40), robots=(robots, robots))(np.random.default_rng(1))
+    figure = draw_plan(scenario, make_solver("edf").solve(scenario))
+    figure.draw_without_rendering()
+    parts = [part for axes in figure.axes for part in (
+        axes.bbox, axes.get_legend().get_window_extent(), axes.xaxis.label.get_window_extent(),
+        *(label.get_window_extent() for axis in (axes.xaxis, axes.yaxis) for label in axis.get_ticklabels()
+          if label.get_text()),
+    )]  # fmt: skip
+    parts += [text.get_window_extent() for text in figure.texts]
+    for index, one in enumerate(parts):
+        assert figure.bbox.x0 <= one.x0 and one.x1 <= figure.bbox.x1 and figure.bbox.y0 <= one.y0
+        for other in parts[:index]:
+            shared = one.intersection(one, other)
+            assert shared is None or min(shared.width, shared.height) < 1.0 or one.width * one.height == 0
+
+
+@pytest.mark.parametrize("origin", [(512000.0, 5403000.0), (-40.0, -1e6)])
+def test_a_map_that_does_not_begin_at_0(origin: tuple[float, float]) -> None:
+    moved = replace(SCENARIO, task_xy=SCENARIO.task_xy + origin, robot_xy=SCENARIO.robot_xy + origin, map_origin=origin)
+    figure = draw_plan(moved, PLAN)
+    figure.draw_without_rendering()
+    routes = figure.axes[0]
+    for axis, low, (left, right) in zip((routes.xaxis, routes.yaxis), origin, (routes.get_xlim(), routes.get_ylim())):
+        assert (left, right) == pytest.approx((low - 3.5, low + 103.5))
+        written = [label.get_text() for label in axis.get_ticklabels()]
+        assert axis.get_offset_text().get_text() == ""
+        assert [float(text) for text in written] == pytest.approx(axis.get_ticklocs())
 
 
 @pytest.mark.parametrize(("suffix", "magic"), [(".png", b"\x89PNG"), (".svg", b"<?xml"), (".PDF", b"%PDF")])

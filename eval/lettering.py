@@ -1,0 +1,90 @@
+"""Where text has room in a picture. Lengths are in points, 1/72 of an inch.
+
+Needs matplotlib (``mrta_zoo[plot]``), which it uses without its global state.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+
+from mrta_zoo.extras import require
+from mrta_zoo.scenario import FloatArray
+
+try:
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import text_to_path
+except ImportError:
+    require("plot", "a picture")
+    raise
+
+SHORTEST = 5
+"""Letters that a shortened text must keep, the mark of what is missing included, to be worth showing."""
+AROUND = ((1, 1), (1, -1), (-1, 1), (-1, -1), (1, 0), (-1, 0), (0, 1), (0, -1))
+"""Where a label may lie as seen from its place, the first choice first."""
+
+
+@lru_cache(maxsize=4096)
+def text_width(text: str, size: float, weight: str = "normal") -> float:
+    """How wide a line of text is in matplotlib's own font."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing from")
+        width, _, _ = text_to_path.get_text_width_height_descent(text, FontProperties(size=size, weight=weight), False)
+    return float(width)
+
+
+def fitted(text: str, room: float, size: float, weight: str = "normal") -> str:
+    """The text if it is no wider than the room; else shortened in the middle, as its ends tell names apart; else "".
+
+    Digits alone are never cut.
+    """
+    if text_width(text, size, weight) <= room:
+        return text
+    for kept in range(len(text) - 1, SHORTEST - 2, -1) if not text.isdecimal() else ():
+        shorter = f"{text[: (kept + 1) // 2]}…{text[len(text) - kept // 2 :]}"
+        if text_width(shorter, size, weight) <= room:
+            return shorter
+    return ""
+
+
+def places_of_labels(
+    places: FloatArray, texts: Sequence[str], size: float, clear: FloatArray, frame: tuple[float, float]
+) -> dict[int, tuple[float, float]]:
+    """Where labels lie beside their places so that none covers another, a mark or the frame.
+
+    Args:
+        places: (N, 2) what is to be labelled.
+        texts: (N,) the labels.
+        size: of the letters.
+        clear: (K, 4) boxes that stay clear: left, bottom, right, top.
+        frame: width and height; labels lie within.
+
+    Returns:
+        The lower left corner of each label for which there is room, by its index.
+    """
+    boxes = np.concatenate((clear, np.empty((len(texts), 4))))
+    taken, found = len(clear), {}
+    height = 0.8 * size
+    for index, ((x, y), text) in enumerate(zip(places.tolist(), texts, strict=True)):
+        width = text_width(text, size)
+        for right, up in AROUND:
+            gap = 3.5 if right and up else 5.0
+            left = x + (gap if right > 0 else -gap - width if right < 0 else -width / 2)
+            bottom = y + (gap - 1.0 if up > 0 else 1.0 - gap - height if up < 0 else -height / 2)
+            box = (left, bottom, left + width, bottom + height)
+            if left < 0 or bottom < 0 or box[2] > frame[0] or box[3] > frame[1] or _covers(box, boxes[:taken]):
+                continue
+            boxes[taken] = box
+            taken += 1
+            found[index] = (left, bottom)
+            break
+    return found
+
+
+def _covers(box: tuple[float, float, float, float], others: FloatArray) -> bool:
+    left, bottom, right, top = box
+    apart = (others[:, 2] <= left) | (others[:, 0] >= right) | (others[:, 3] <= bottom) | (others[:, 1] >= top)
+    return not apart.all()

@@ -1,0 +1,256 @@
+"""Who does what when: a plan's schedule as a chart, in which a line joins each task to its deadline.
+
+Needs matplotlib (``mrta_zoo[plot]``), which it uses without its global state. Heights are in points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from mrta_zoo.eval.lettering import fitted, text_width
+from mrta_zoo.extras import require
+from mrta_zoo.palette import FAINT, GROUND, INK, robot_colour
+from mrta_zoo.render.style import plain
+from mrta_zoo.scenario import Scenario
+from mrta_zoo.verify import Score, Visit
+
+try:
+    from matplotlib.collections import LineCollection
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+    from matplotlib.patheffects import withStroke
+except ImportError:
+    require("plot", "a picture")
+    raise
+
+LATE = "#000000"
+BAR, APART, LANE = 20.0, 9.0, 3.0
+"""Of bars, between robots, and from one line to a deadline to the next; where there is room, up to twice as much."""
+FARTHEST = 70.0
+"""Between robots, however few."""
+THINNEST_LANE = 1.2
+"""Below that, lines would run into each other: deadlines are ticks then, which no line joins to their tasks."""
+TICKS = 5.0
+"""For such ticks."""
+NAME, LABEL = 9.0, 7.0
+"""Sizes of text."""
+HIGH = 600.0
+"""A chart higher than this has its numbers above it, too."""
+LEAST_FOR_NAME, LEAST_FOR_BOTH = 5.5, 22.0
+"""Of a row in which the robot's name has room, and in which what it does has room, too."""
+
+
+@dataclass(frozen=True, slots=True)
+class Schedule:
+    """The chart: how high its parts are, and how it is drawn.
+
+    Attributes:
+        scenario: what was planned.
+        score: the verifier's of the plan.
+        end: where the axis of time ends; deadlines beyond are marked at its end.
+        below: for each robot, the lane of each task's line to its deadline, counted from the bottom; -1 if late.
+        above: likewise, over the bars and counted from the top, for tasks that are late; -1 for those in time.
+        bar: height of a bar.
+        apart: between the rows of two robots.
+        lane: height of a lane; 0 if deadlines are mere ticks.
+    """
+
+    scenario: Scenario
+    score: Score
+    end: float
+    below: list[list[int]]
+    above: list[list[int]]
+    bar: float = BAR
+    apart: float = APART
+    lane: float = LANE
+
+    @classmethod
+    def of(cls, scenario: Scenario, score: Score, end: float, least: float, most: float) -> Schedule:
+        """A chart that is no higher than `most` and, unless that pulls it apart too much, no lower than `least`."""
+        lanes = [_lanes_of(visits) for visits in score.schedule]
+        chart = cls(scenario, score, end, [each[0] for each in lanes], [each[1] for each in lanes])
+        natural = chart.height
+        if natural < least:
+            larger = min(least / natural, 2.0)
+            chart = replace(chart, bar=BAR * min(larger, 1.5), lane=LANE * larger)
+            return replace(chart, apart=min(APART + (least - chart.height) / scenario.num_robots, FARTHEST))
+        if natural <= most:
+            return chart
+        count = sum(chart._count(robot) for robot in range(scenario.num_robots))
+        lane = (most - (natural - LANE * count)) / max(count, 1)
+        if lane >= THINNEST_LANE:
+            return replace(chart, lane=lane)
+        chart = replace(chart, lane=0.0)
+        share = min(most / chart.height, 1.0)
+        return replace(chart, bar=BAR * share, apart=APART * share)
+
+    @property
+    def height(self) -> float:
+        """Of all rows."""
+        return sum(self._row(robot) for robot in range(self.scenario.num_robots))
+
+    def left(self) -> float:
+        """Room for the names of robots."""
+        return max(text_width(line, NAME, "bold") for each in self._names() for line in each.split("\n")) + 6
+
+    def draw(self, axes: Any, width: float) -> None:
+        """Draw it on axes that are so wide, and as high as `height`."""
+        low, high = -0.005 * self.end, 1.012 * self.end
+        scale = width / (high - low)
+        axes.set(xlim=(low, high), ylim=(self.height, 0.0))
+        plain(axes)
+        axes.grid(axis="y", visible=False)
+        middles, top = [], 0.0
+        for robot in range(self.scenario.num_robots):
+            base = top + self.apart / 2 + self.lane * (max(self.above[robot], default=-1) + 1)
+            middles.append(base + self.bar / 2)
+            if self.score.schedule[robot]:
+                self._draw_row(axes, robot, base, scale)
+            top += self._row(robot)
+        self._draw_names(axes, middles)
+        axes.xaxis.set_major_formatter(lambda value, _: f"{value:.10g}")
+        axes.xaxis.set_tick_params(labeltop=self.height > HIGH)
+        axes.set_xlabel("time units", color=FAINT, fontsize=9)
+        axes.set_title("Who does what when", fontsize=10, color=FAINT, loc="left")
+
+    def legend(self) -> list[Any]:
+        """What the marks mean, as handles with labels."""
+        known_as = "name" if self.scenario.task_names else "number"
+        joined = "from a bar to the task's deadline" if self.lane else "deadlines of the robot's tasks"
+        return [
+            Line2D([], [], color=FAINT, linewidth=1.6, label="travel"),
+            Patch(facecolor=FAINT, edgecolor=FAINT, label=f"work ({known_as} of the task)"),
+            Line2D([0, 1], [0, 0], color=FAINT, linewidth=0.8 if self.lane else 0.0, marker="|", markevery=[1],
+                   markersize=7, markeredgewidth=1.8, label=joined),
+            Line2D([], [], color=LATE, marker="x", linestyle="", markersize=6, markeredgewidth=1.6,
+                   label="finished late"),
+        ]  # fmt: skip
+
+    def _count(self, robot: int) -> int:
+        return sum(max(lanes[robot], default=-1) + 1 for lanes in (self.above, self.below))
+
+    def _row(self, robot: int) -> float:
+        return self.bar + self.apart + (self.lane * self._count(robot) if self.lane else TICKS * self.bar / BAR)
+
+    def _names(self) -> list[str]:
+        least = min(self._row(robot) for robot in range(self.scenario.num_robots))
+        if least < LEAST_FOR_NAME:
+            return [""] * self.scenario.num_robots
+        names = [fitted(self.scenario.robot_name(robot), 150.0, NAME, "bold") for robot in range(len(self.below))]
+        if least < LEAST_FOR_BOTH:
+            return names
+        return [f"{name}\n{_load(visits)}" for name, visits in zip(names, self.score.schedule, strict=True)]
+
+    def _draw_names(self, axes: Any, middles: list[float]) -> None:
+        size = min(NAME, 0.8 * min(self._row(robot) for robot in range(len(middles))))
+        axes.set_yticks(middles, self._names())
+        for robot, label in enumerate(axes.get_yticklabels()):
+            label.set(color=robot_colour(robot), fontweight="bold", fontsize=size)
+
+    def _draw_row(self, axes: Any, robot: int, base: float, scale: float) -> None:
+        visits, colour = self.score.schedule[robot], robot_colour(robot)
+        arrival = np.array([visit.arrival for visit in visits])
+        finish = np.array([visit.finish for visit in visits])
+        late = np.array([not visit.completed for visit in visits])
+        leave, middle = np.concatenate(([0.0], finish[:-1])), np.full(len(visits), base + self.bar / 2)
+        ends = np.stack((leave, middle, arrival, middle), axis=1)
+        axes.add_collection(
+            LineCollection(list(ends.reshape(-1, 2, 2)), colors=colour, linewidths=1.6, alpha=0.8, zorder=2)
+        )
+        wide = scale * (finish - arrival) > 2.5  # an edge of the ground's colour keeps bars apart that touch
+        for which, face, edge in (
+            (~late & wide, colour, GROUND),
+            (~late & ~wide, colour, colour),
+            (late, "white", LATE),
+        ):
+            axes.bar(
+                arrival[which], self.bar, (finish - arrival)[which], base, align="edge", color=face, edgecolor=edge,
+                linewidth=1.0, hatch="////" if face == "white" else None, zorder=3,
+            )  # fmt: skip
+        self._draw_deadlines(axes, robot, base, colour)
+        for visit in visits:
+            self._write(axes, visit, base + self.bar / 2, scale * (visit.finish - visit.arrival) - 4.0)
+
+    def _write(self, axes: Any, visit: Visit, middle: float, room: float) -> None:
+        """The name of a task in its bar, upright or on its side, if there is room for it."""
+        name, height = self.scenario.task_name(visit.task), self.bar - 4.0
+        upright = fitted(name, room, LABEL) if height >= LABEL - 2.0 else ""
+        on_its_side = upright != name and len(side := fitted(name, height, LABEL) if room >= LABEL else "") > len(
+            upright
+        )
+        written = side if on_its_side else upright
+        if written:
+            axes.text(
+                (visit.arrival + visit.finish) / 2, middle, written, fontsize=LABEL, ha="center",
+                va="center" if on_its_side else "center_baseline", rotation=90 if on_its_side else 0,
+                color="white" if visit.completed else INK, zorder=6, clip_on=True,
+                path_effects=[] if visit.completed else [withStroke(linewidth=3, foreground="white")],
+            )  # fmt: skip
+
+    def _draw_deadlines(self, axes: Any, robot: int, base: float, colour: str) -> None:
+        """A tick for each deadline, joined to the end of its task's bar; what lies beyond the axis is at its end."""
+        visits, bottom = self.score.schedule[robot], base + self.bar
+        floor = bottom + self.lane * (max(self.below[robot], default=-1) + 1)
+        ceiling = base - self.lane * (max(self.above[robot], default=-1) + 1)
+        lines, due, at = [], [], []
+        for visit, below, above in zip(visits, self.below[robot], self.above[robot], strict=True):
+            side, lane = (base, ceiling + self.lane * (above + 0.4)) if above >= 0 else (
+                bottom, floor - self.lane * (below + 0.2))  # fmt: skip
+            due.append(min(visit.deadline, self.end))
+            at.append(lane if self.lane else bottom + 0.6 * TICKS * self.bar / BAR)
+            lines.append([(visit.finish, side), (visit.finish, lane), (due[-1], lane)])
+        half = 0.4 * min(self.lane, 5.0) if self.lane else 0.4 * TICKS * self.bar / BAR
+        places, heights = np.array(due), np.array(at)
+        if self.lane:
+            axes.add_collection(
+                LineCollection(lines, colors=colour, linewidths=min(0.8, 0.4 * self.lane), alpha=0.7, zorder=2.5)
+            )
+        axes.vlines(places, heights - half, heights + half, color=colour, linewidth=1.8, zorder=3)
+        beyond = np.array([visit.deadline > self.end for visit in visits])
+        axes.scatter(places[beyond], heights[beyond], marker=">", s=9, color=colour, zorder=3, clip_on=False)
+        late = np.array([not visit.completed for visit in visits])
+        crosses = heights[late] if self.lane else np.full(late.sum(), base)
+        axes.scatter(
+            [visit.finish for visit in visits if not visit.completed], crosses, marker="x", s=22, c=LATE,
+            linewidths=1.6, zorder=5,
+        )  # fmt: skip
+
+
+def lanes(starts: Sequence[float], ends: Sequence[float]) -> list[int]:
+    """The lane for each of some lines side by side, such that none crosses another one, nor what leads down to it.
+
+    A line begins under its start, to which something leads down through all lanes that lie higher.
+
+    Args:
+        starts: where lines begin, rising.
+        ends: where they end, not before.
+
+    Returns:
+        For each line its lane, counted from the bottom.
+    """
+    found: list[int] = []
+    for index, start in enumerate(starts):
+        under = [lane for lane, end in zip(found, ends[:index], strict=True) if end >= start]
+        found.append(max(under, default=-1) + 1)
+    return found
+
+
+def _lanes_of(visits: Sequence[Visit]) -> tuple[list[int], list[int]]:
+    """Lanes below for tasks in time, whose lines go on; and above for those late, whose lines go back."""
+    below, above = [-1] * len(visits), [-1] * len(visits)
+    in_time = [index for index, visit in enumerate(visits) if visit.completed]
+    late = [index for index, visit in enumerate(visits) if not visit.completed][::-1]
+    for lane, sign, which in ((below, 1.0, in_time), (above, -1.0, late)):
+        starts = [sign * visits[index].finish for index in which]
+        ends = [sign * visits[index].deadline for index in which]
+        for index, found in zip(which, lanes(starts, ends), strict=True):
+            lane[index] = found
+    return below, above
+
+
+def _load(visits: Sequence[Visit]) -> str:
+    return f"{sum(visit.completed for visit in visits)} of {len(visits)}"
