@@ -15,6 +15,7 @@ from mrta_zoo.eval.lettering import fitted, text_width
 from mrta_zoo.extras import require
 from mrta_zoo.palette import FAINT, GROUND, INK, robot_colour
 from mrta_zoo.render.style import plain
+from mrta_zoo.scales import Scales
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import Score, Visit
 
@@ -69,9 +70,11 @@ class Schedule:
     lane: float = LANE
 
     @classmethod
-    def of(cls, scenario: Scenario, score: Score, end: float, least: float, most: float) -> Schedule:
+    def of(cls, scenario: Scenario, score: Score, least: float, most: float) -> Schedule:
         """A chart that is no higher than `most` and, unless that pulls it apart too much, no lower than `least`."""
         lanes = [_lanes_of(visits) for visits in score.schedule]
+        latest = Scales.of(scenario).time
+        end = max(score.makespan, min(latest, 2 * score.makespan or latest))
         chart = cls(scenario, score, end, [each[0] for each in lanes], [each[1] for each in lanes])
         natural = chart.height
         if natural < least:
@@ -162,11 +165,8 @@ class Schedule:
             LineCollection(list(ends.reshape(-1, 2, 2)), colors=colour, linewidths=1.6, alpha=0.8, zorder=2)
         )
         wide = scale * (finish - arrival) > 2.5  # an edge of the ground's colour keeps bars apart that touch
-        for which, face, edge in (
-            (~late & wide, colour, GROUND),
-            (~late & ~wide, colour, colour),
-            (late, "white", LATE),
-        ):
+        looks = ((~late & wide, colour, GROUND), (~late & ~wide, colour, colour), (late, "white", LATE))
+        for which, face, edge in looks:
             axes.bar(
                 arrival[which], self.bar, (finish - arrival)[which], base, align="edge", color=face, edgecolor=edge,
                 linewidth=1.0, hatch="////" if face == "white" else None, zorder=3,
@@ -179,10 +179,9 @@ class Schedule:
         """The name of a task in its bar, upright or on its side, if there is room for it."""
         name, height = self.scenario.task_name(visit.task), self.bar - 4.0
         upright = fitted(name, room, LABEL) if height >= LABEL - 2.0 else ""
-        on_its_side = upright != name and len(side := fitted(name, height, LABEL) if room >= LABEL else "") > len(
-            upright
-        )
-        written = side if on_its_side else upright
+        turned = fitted(name, height, LABEL) if room >= LABEL and upright != name else ""
+        on_its_side = len(turned) > len(upright)
+        written = turned if on_its_side else upright
         if written:
             axes.text(
                 (visit.arrival + visit.finish) / 2, middle, written, fontsize=LABEL, ha="center",

@@ -42,8 +42,7 @@ def draw_plan(scenario: Scenario, plan: Plan, score: Score | None = None) -> Fig
         PlanError: if the plan does not fit the scenario.
     """
     score = verify(scenario, plan) if score is None else score
-    end = max(score.makespan, float(scenario.deadline.max()))
-    chart = Schedule.of(scenario, score, end, LEAST, MOST)
+    chart = Schedule.of(scenario, score, LEAST, MOST)
     room = min(max(chart.height, LEAST), MAP[1])
     routes = RouteMap.of(scenario, plan, score, (MAP[0], room))
     map_width = max(routes.size[0], 0.6 * LEAST)  # for the legend below
@@ -90,8 +89,8 @@ def _title(scenario: Scenario, plan: Plan, score: Score) -> str:
 def _legend_below(axes: Any, handles: list[Any], width: float, below: float) -> None:
     """A legend so many points below axes, in two lines if there is no room for one."""
     height = axes.get_position().height * axes.figure.get_figheight() * 72
+    columns = len(handles) if width >= NARROW else -(-len(handles) // 2)
     axes.legend(
         handles=handles, loc="upper left", bbox_to_anchor=(0.0, -below / height), borderaxespad=0.0, borderpad=0.0,
-        ncols=len(handles) if width >= NARROW else -(-len(handles) // 2), frameon=False, fontsize=LEGEND, labelcolor=INK,
-        handletextpad=0.4, columnspacing=1.4,
+        ncols=columns, frameon=False, fontsize=LEGEND, labelcolor=INK, handletextpad=0.4, columnspacing=1.4,
     )  # fmt: skip

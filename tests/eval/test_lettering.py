@@ -18,7 +18,7 @@ def test_widths_are_those_of_the_font() -> None:
 
 
 @pytest.mark.parametrize(("text", "room", "shown"), [
-    ("valve-17", 40.0, "valve-17"), ("survey-point-17", 40.0, "surv…-17"), ("survey-point-17", 18.0, ""),
+    ("valve-17", 40.0, "valve-17"), ("survey-point-17", 40.0, "surv…t-17"), ("survey-point-17", 18.0, ""),
     ("1234567", 33.0, "1234567"), ("1234567", 30.0, ""), ("", 5.0, ""), ("ab", 3.0, ""),
 ])  # fmt: skip
 def test_names_are_shortened_in_the_middle_and_numbers_never(text: str, room: float, shown: str) -> None:
@@ -34,7 +34,8 @@ def test_labels_cover_neither_each_other_nor_marks() -> None:
     assert len(found) > 90
     boxes = [(x, y, x + text_width(texts[index], 6.5), y + 5.2) for index, (x, y) in found.items()]
     for number, (left, bottom, right, top) in enumerate(boxes):
-        assert left >= 0 and bottom >= 0 and right <= 300 and top <= 300
+        assert 0 <= left < right <= 300
+        assert 0 <= bottom < top <= 300
         for a, b, c, d in [*boxes[:number], *marks.tolist()]:
             assert c <= left or a >= right or d <= bottom or b >= top
 

@@ -132,14 +132,17 @@ def test_nothing_lies_on_anything_else(robots: int) -> None:
     scenario = UniformGenerator(tasks=(40, 40), robots=(robots, robots))(np.random.default_rng(1))
     figure = draw_plan(scenario, make_solver("edf").solve(scenario))
     figure.draw_without_rendering()
-    parts = [part for axes in figure.axes for part in (
-        axes.bbox, axes.get_legend().get_window_extent(), axes.xaxis.label.get_window_extent(),
-        *(label.get_window_extent() for axis in (axes.xaxis, axes.yaxis) for label in axis.get_ticklabels()
-          if label.get_text()),
-    )]  # fmt: skip
+    parts = []
+    for axes in figure.axes:
+        parts += [axes.bbox, axes.get_legend().get_window_extent(), axes.xaxis.label.get_window_extent()]
+        for axis in (axes.xaxis, axes.yaxis):
+            low, high = sorted(axis.get_view_interval())
+            labels = zip(axis.get_ticklocs(), axis.get_ticklabels(), strict=False)  # those above follow
+            parts += [label.get_window_extent() for place, label in labels if low <= place <= high]
     parts += [text.get_window_extent() for text in figure.texts]
     for index, one in enumerate(parts):
-        assert figure.bbox.x0 <= one.x0 and one.x1 <= figure.bbox.x1 and figure.bbox.y0 <= one.y0
+        assert figure.bbox.x0 <= one.x0 <= one.x1 <= figure.bbox.x1
+        assert figure.bbox.y0 <= one.y0 <= one.y1 <= figure.bbox.y1
         for other in parts[:index]:
             shared = one.intersection(one, other)
             assert shared is None or min(shared.width, shared.height) < 1.0 or one.width * one.height == 0
@@ -151,8 +154,8 @@ def test_a_map_that_does_not_begin_at_0(origin: tuple[float, float]) -> None:
     figure = draw_plan(moved, PLAN)
     figure.draw_without_rendering()
     routes = figure.axes[0]
-    for axis, low, (left, right) in zip((routes.xaxis, routes.yaxis), origin, (routes.get_xlim(), routes.get_ylim())):
-        assert (left, right) == pytest.approx((low - 3.5, low + 103.5))
+    for axis, low in zip((routes.xaxis, routes.yaxis), origin, strict=True):
+        assert axis.get_view_interval() == pytest.approx((low - 3.5, low + 103.5))
         written = [label.get_text() for label in axis.get_ticklabels()]
         assert axis.get_offset_text().get_text() == ""
         assert [float(text) for text in written] == pytest.approx(axis.get_ticklocs())
@@ -191,3 +194,23 @@ def test_without_matplotlib_it_names_the_extra(module: str, monkeypatch: pytest.
         monkeypatch.delitem(sys.modules, f"mrta_zoo.{name}", raising=False)
     with pytest.raises(MissingExtraError, match=r'needs matplotlib.*pip install "mrta_zoo\[plot\]"'):
         importlib.import_module(f"mrta_zoo.{module}")
+
+
+def test_a_mission_in_the_corner_of_a_large_map_fills_the_picture() -> None:
+    corner = replace(SCENARIO, map_size=(512010.0, 5403010.0))
+    routes = draw_plan(corner, PLAN).axes[0]
+    assert routes.get_xlim() == pytest.approx((-3.15, 93.15))  # the box around all places is 90 by 90
+    line = replace(SCENARIO, task_xy=[[5, 0], [5, 40], [5, 80]], robot_xy=[[5, 0], [5, 90]], map_size=(1e6, 1e6))
+    routes = draw_plan(line, PLAN).axes[0]
+    assert routes.get_ylim() == pytest.approx((-3.15, 93.15))
+    assert np.diff(routes.get_xlim()) > 20  # no map is without width
+
+
+def test_one_late_deadline_does_not_squash_the_chart() -> None:
+    lasting = replace(SCENARIO, deadline=[1e9, 38, 90])
+    figure = draw_plan(lasting, PLAN)
+    end = figure.axes[1].get_xlim()[1]
+    assert end < 250
+    assert max(way[-1][0] for way in lines_to_deadlines(figure)) == pytest.approx(end / 1.012)
+    easy = replace(SCENARIO, deadline=[1e9, 1e9, 1e9])
+    assert draw_plan(easy, PLAN).axes[1].get_xlim()[1] < 100  # twice the 40 that it takes
