@@ -15,9 +15,9 @@ from mrta_zoo.extras import require
 from mrta_zoo.palette import FAINT, INK, robot_colour
 from mrta_zoo.plan import Plan
 from mrta_zoo.render.style import plain
-from mrta_zoo.scales import frame_of
 from mrta_zoo.scenario import FloatArray, Scenario
 from mrta_zoo.verify import Score
+from mrta_zoo.view import shown_box
 
 try:
     from matplotlib.lines import Line2D
@@ -32,8 +32,6 @@ MOST_NUMBERED = 150
 """Tasks on the map that still get their number, and robots that get a label of their own."""
 MARGIN = 0.035
 """Around the map, as a share of its longer side."""
-LEAST_SIDE = 0.25
-"""Of the map's shorter side, as a share of the longer one."""
 LABEL, START, TICK = 6.5, 8.0, 8.0
 """Sizes of text."""
 LONGEST = 60.0
@@ -63,10 +61,9 @@ class RouteMap:
     @classmethod
     def of(cls, scenario: Scenario, plan: Plan, score: Score, room: tuple[float, float]) -> RouteMap:
         """The map within a room of some width and height."""
-        low, extent = frame_of(scenario)
-        longer = float(extent.max())
-        missing = np.maximum(LEAST_SIDE * longer - extent, 0.0)  # where all places lie on a line
-        low, high = low - missing / 2 - MARGIN * longer, low + extent + missing / 2 + MARGIN * longer
+        low, size = shown_box(scenario)
+        margin = MARGIN * float(size.max())
+        low, high = low - margin, low + size + margin
         scale = float(np.min(np.array(room) / (high - low)))
         width, height = (scale * (high - low)).tolist()
         return cls(scenario, plan, score, low, scale, (width, height))

@@ -13,11 +13,12 @@ import numpy as np
 
 from mrta_zoo.eval.lettering import fitted, text_width
 from mrta_zoo.extras import require
+from mrta_zoo.lanes import deadline_lanes
 from mrta_zoo.palette import FAINT, GROUND, INK, robot_colour
 from mrta_zoo.render.style import plain
-from mrta_zoo.scales import Scales
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import Score, Visit
+from mrta_zoo.view import shown_time
 
 try:
     from matplotlib.collections import LineCollection
@@ -53,8 +54,7 @@ class Schedule:
         scenario: what was planned.
         score: the verifier's of the plan.
         end: where the axis of time ends; deadlines beyond are marked at its end.
-        below: for each robot, the lane of each task's line to its deadline, counted from the bottom; -1 if late.
-        above: likewise, over the bars and counted from the top, for tasks that are late; -1 for those in time.
+        lanes: for each robot, those of its tasks' lines to their deadlines, see `lanes.deadline_lanes`.
         bar: height of a bar.
         apart: between the rows of two robots.
         lane: height of a lane; 0 if deadlines are mere ticks.
@@ -63,8 +63,7 @@ class Schedule:
     scenario: Scenario
     score: Score
     end: float
-    below: list[list[int]]
-    above: list[list[int]]
+    lanes: list[list[int]]
     bar: float = BAR
     apart: float = APART
     lane: float = LANE
@@ -72,10 +71,8 @@ class Schedule:
     @classmethod
     def of(cls, scenario: Scenario, score: Score, least: float, most: float) -> Schedule:
         """A chart that is no higher than `most` and, unless that pulls it apart too much, no lower than `least`."""
-        lanes = [_lanes_of(visits) for visits in score.schedule]
-        latest = Scales.of(scenario).time
-        end = max(score.makespan, min(latest, 2 * score.makespan or latest))
-        chart = cls(scenario, score, end, [each[0] for each in lanes], [each[1] for each in lanes])
+        end = shown_time(scenario, score.makespan)
+        chart = cls(scenario, score, end, [deadline_lanes(visits) for visits in score.schedule])
         natural = chart.height
         if natural < least:
             larger = min(least / natural, 2.0)
@@ -83,7 +80,7 @@ class Schedule:
             return replace(chart, apart=min(APART + (least - chart.height) / scenario.num_robots, FARTHEST))
         if natural <= most:
             return chart
-        count = sum(chart._count(robot) for robot in range(scenario.num_robots))
+        count = sum(sum(chart._counts(robot)) for robot in range(scenario.num_robots))
         lane = (most - (natural - LANE * count)) / max(count, 1)
         if lane >= THINNEST_LANE:
             return replace(chart, lane=lane)
@@ -109,7 +106,7 @@ class Schedule:
         axes.grid(axis="y", visible=False)
         middles, top = [], 0.0
         for robot in range(self.scenario.num_robots):
-            base = top + self.apart / 2 + self.lane * (max(self.above[robot], default=-1) + 1)
+            base = top + self.apart / 2 + self.lane * self._counts(robot)[0]
             middles.append(base + self.bar / 2)
             if self.score.schedule[robot]:
                 self._draw_row(axes, robot, base, scale)
@@ -133,17 +130,23 @@ class Schedule:
                    label="finished late"),
         ]  # fmt: skip
 
-    def _count(self, robot: int) -> int:
-        return sum(max(lanes[robot], default=-1) + 1 for lanes in (self.above, self.below))
+    def _counts(self, robot: int) -> tuple[int, int]:
+        """The lanes above a robot's bars, and below."""
+        both = list(zip(self.score.schedule[robot], self.lanes[robot], strict=True))
+        above, below = (
+            max((lane for visit, lane in both if visit.completed == in_time), default=-1) + 1
+            for in_time in (False, True)
+        )
+        return above, below
 
     def _row(self, robot: int) -> float:
-        return self.bar + self.apart + (self.lane * self._count(robot) if self.lane else TICKS * self.bar / BAR)
+        return self.bar + self.apart + (self.lane * sum(self._counts(robot)) if self.lane else TICKS * self.bar / BAR)
 
     def _names(self) -> list[str]:
         least = min(self._row(robot) for robot in range(self.scenario.num_robots))
         if least < LEAST_FOR_NAME:
             return [""] * self.scenario.num_robots
-        names = [fitted(self.scenario.robot_name(robot), 150.0, NAME, "bold") for robot in range(len(self.below))]
+        names = [fitted(self.scenario.robot_name(robot), 150.0, NAME, "bold") for robot in range(len(self.lanes))]
         if least < LEAST_FOR_BOTH:
             return names
         return [f"{name}\n{_load(visits)}" for name, visits in zip(names, self.score.schedule, strict=True)]
@@ -193,15 +196,16 @@ class Schedule:
     def _draw_deadlines(self, axes: Any, robot: int, base: float, colour: str) -> None:
         """A tick for each deadline, joined to the end of its task's bar; what lies beyond the axis is at its end."""
         visits, bottom = self.score.schedule[robot], base + self.bar
-        floor = bottom + self.lane * (max(self.below[robot], default=-1) + 1)
-        ceiling = base - self.lane * (max(self.above[robot], default=-1) + 1)
+        above, below = self._counts(robot)
         lines, due, at = [], [], []
-        for visit, below, above in zip(visits, self.below[robot], self.above[robot], strict=True):
-            side, lane = (base, ceiling + self.lane * (above + 0.4)) if above >= 0 else (
-                bottom, floor - self.lane * (below + 0.2))  # fmt: skip
+        for visit, lane in zip(visits, self.lanes[robot], strict=True):
+            if visit.completed:
+                side, place = bottom, bottom + self.lane * (below - lane - 0.2)
+            else:
+                side, place = base, base - self.lane * (above - lane - 0.4)
             due.append(min(visit.deadline, self.end))
-            at.append(lane if self.lane else bottom + 0.6 * TICKS * self.bar / BAR)
-            lines.append([(visit.finish, side), (visit.finish, lane), (due[-1], lane)])
+            at.append(place if self.lane else bottom + 0.6 * TICKS * self.bar / BAR)
+            lines.append([(visit.finish, side), (visit.finish, place), (due[-1], place)])
         half = 0.4 * min(self.lane, 5.0) if self.lane else 0.4 * TICKS * self.bar / BAR
         places, heights = np.array(due), np.array(at)
         if self.lane:
@@ -217,38 +221,6 @@ class Schedule:
             [visit.finish for visit in visits if not visit.completed], crosses, marker="x", s=22, c=LATE,
             linewidths=1.6, zorder=5,
         )  # fmt: skip
-
-
-def lanes(starts: Sequence[float], ends: Sequence[float]) -> list[int]:
-    """The lane for each of some lines side by side, such that none crosses another one, nor what leads down to it.
-
-    A line begins under its start, to which something leads down through all lanes that lie higher.
-
-    Args:
-        starts: where lines begin, rising.
-        ends: where they end, not before.
-
-    Returns:
-        For each line its lane, counted from the bottom.
-    """
-    found: list[int] = []
-    for index, start in enumerate(starts):
-        under = [lane for lane, end in zip(found, ends[:index], strict=True) if end >= start]
-        found.append(max(under, default=-1) + 1)
-    return found
-
-
-def _lanes_of(visits: Sequence[Visit]) -> tuple[list[int], list[int]]:
-    """Lanes below for tasks in time, whose lines go on; and above for those late, whose lines go back."""
-    below, above = [-1] * len(visits), [-1] * len(visits)
-    in_time = [index for index, visit in enumerate(visits) if visit.completed]
-    late = [index for index, visit in enumerate(visits) if not visit.completed][::-1]
-    for lane, sign, which in ((below, 1.0, in_time), (above, -1.0, late)):
-        starts = [sign * visits[index].finish for index in which]
-        ends = [sign * visits[index].deadline for index in which]
-        for index, found in zip(which, lanes(starts, ends), strict=True):
-            lane[index] = found
-    return below, above
 
 
 def _load(visits: Sequence[Visit]) -> str:

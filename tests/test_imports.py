@@ -31,8 +31,17 @@ LAYERS = (
             "mrta_zoo.stand_ins",
         ),
     ),
-    ("the problem", ("mrta_zoo", "mrta_zoo.scenario", "mrta_zoo.plan")),
-    ("its rules, and by what it is measured", ("mrta_zoo.rules", "mrta_zoo.scales")),
+    (
+        "the problem, its rules, and by what it is measured",
+        (
+            "mrta_zoo",
+            "mrta_zoo.scenario",
+            "mrta_zoo.plan",
+            "mrta_zoo.rules",
+            "mrta_zoo.scales",
+            "mrta_zoo.view",
+        ),
+    ),
     (
         "dynamics, scores and data",
         (
@@ -41,6 +50,7 @@ LAYERS = (
             "mrta_zoo.objective",
             "mrta_zoo.left_out",
             "mrta_zoo.verify",
+            "mrta_zoo.lanes",
             "mrta_zoo.trace",
             "mrta_zoo.generators",
             "mrta_zoo.io",

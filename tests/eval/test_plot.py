@@ -18,7 +18,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from mrta_zoo.errors import ConfigError, MissingExtraError, PlanError
-from mrta_zoo.eval.plan_schedule import lanes
 from mrta_zoo.eval.plot_plan import draw_plan, save_plan_picture
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.palette import GROUND, robot_colour
@@ -74,20 +73,6 @@ def test_each_deadline_is_joined_to_its_task() -> None:
     assert early[1] == bars[15].get_y() + bars[15].get_height() < early_corner[1] == early_due[1]  # below it
     assert (late[0], late_corner[0], late_due[0]) == (40, 40, 38)
     assert late[1] == bars[40].get_y() > late_corner[1] == late_due[1]  # above it
-
-
-def test_ways_to_deadlines_do_not_cross() -> None:
-    assert lanes([1, 2, 3, 6], [5, 4, 9, 7]) == [0, 1, 2, 3]  # all side by side; the fourth begins under the third's
-    assert lanes([1, 2, 5, 6], [3, 9, 9, 7]) == [0, 1, 2, 3]
-    assert lanes([1, 4, 6], [3, 9, 7]) == [0, 0, 1]  # the first has ended when the second begins
-    rng = np.random.default_rng(0)
-    starts = np.sort(rng.random(60)) * 100
-    ends = starts + rng.exponential(20, 60)
-    found = lanes(starts.tolist(), ends.tolist())
-    for one in range(60):
-        for other in range(one + 1, 60):
-            if starts[other] <= ends[one]:  # what leads down to the other one must not meet this one
-                assert found[other] > found[one]
 
 
 def test_bars_that_touch_are_kept_apart() -> None:
