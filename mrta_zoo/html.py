@@ -45,42 +45,39 @@ def in_order(names: Iterable[object]) -> str:
 
 
 def map_of(
-    map_size: tuple[float, float],
-    tasks: Sequence[tuple[float, float]],
-    deadlines: Sequence[float],
-    robots: Sequence[tuple[float, float]],
-    task_names: Sequence[str],
-    robot_names: Sequence[str],
+    low: tuple[float, float],
+    size: tuple[float, float],
+    tasks: Sequence[tuple[str, float, float, float]],
+    robots: Sequence[tuple[str, float, float]],
+    horizon: float,
 ) -> str:
     """A map as SVG: tasks, the redder the earlier their deadline, and the squares where robots start.
 
     Args:
-        map_size: width and height in distance units, > 0.
-        tasks: their places, from the map's lowest x and y.
-        deadlines: one for each task, > 0.
-        robots: their places, likewise.
-        task_names: what to call each task, as plain text.
-        robot_names: what to call each robot, likewise.
+        low: the lowest x and y that are shown.
+        size: width and height of what is shown, in distance units, > 0.
+        tasks: what each is called, its place and its deadline.
+        robots: what each is called, and its place.
+        horizon: the deadline, > 0, from which on tasks are as pale as can be.
     """
-    scale = _SIDE / max(map_size)
-    width, height = (scale * side for side in map_size)
+    scale = _SIDE / max(size)
+    width, height = (scale * side for side in size)
     radius = max(1.5, min(4.0, 40.0 / len(tasks) ** 0.5))
-    horizon = max(deadlines)
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width + 20:.0f}" height="{height + 20:.0f}" '
         f'viewBox="-10 -10 {width + 20:.1f} {height + 20:.1f}">'
         f'<rect x="-10" y="-10" width="{width + 20:.1f}" height="{height + 20:.1f}" fill="{GROUND}"/>'
     ]
-    for task, ((x, y), deadline) in enumerate(zip(tasks, deadlines, strict=True)):
+    for name, x, y, deadline in tasks:
         lines.append(
-            f'<circle cx="{scale * x:.1f}" cy="{height - scale * y:.1f}" r="{radius:.1f}" '
+            f'<circle cx="{scale * (x - low[0]):.1f}" cy="{height - scale * (y - low[1]):.1f}" r="{radius:.1f}" '
             f'fill="{blend(URGENCY, deadline / horizon)}" stroke="{FAINT}" stroke-width="0.7">'
-            f"<title>{escape(task_names[task])}, deadline {deadline:g}</title></circle>"
+            f"<title>{escape(name)}, deadline {deadline:g}</title></circle>"
         )
-    for robot, (x, y) in enumerate(robots):
+    for robot, (name, x, y) in enumerate(robots):
         lines.append(
-            f'<rect x="{scale * x - 4:.1f}" y="{height - scale * y - 4:.1f}" width="8" height="8" '
-            f'fill="{robot_colour(robot)}" stroke="#ffffff"><title>{escape(robot_names[robot])}</title></rect>'
+            f'<rect x="{scale * (x - low[0]) - 4:.1f}" y="{height - scale * (y - low[1]) - 4:.1f}" '
+            f'width="8" height="8" fill="{robot_colour(robot)}" stroke="#ffffff"><title>{escape(name)}</title></rect>'
         )
     lines.append("</svg>")
     return "".join(lines)

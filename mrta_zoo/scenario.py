@@ -173,17 +173,18 @@ class Scenario:
                 ("capacity", self.capacity), ("speed", self.speed),
             )
         ]  # fmt: skip
-        width, height = self.map_size
-        title = f"{self.name}: {self.size}, map {width:g} by {height:g}"
-        tasks, robots = ((places - self.map_origin).tolist() for places in (self.task_xy, self.robot_xy))
-        picture = map_of(
-            self.map_size,
-            tasks,
-            self.deadline.tolist(),
-            robots,
-            [f"task {self.task_name(task)}" for task in range(self.num_tasks)],
-            [self.robot_name(robot) for robot in range(self.num_robots)],
-        )
+        from mrta_zoo.view import shown_box, shown_time  # which look at scenarios
+
+        (x, y), (width, height) = self.map_origin, self.map_size
+        begins = f" from {x:.12g}, {y:.12g}" if x or y else ""
+        title = f"{self.name}: {self.size}, map {width:g} by {height:g}{begins}"
+        tasks = [
+            (f"task {self.task_name(task)}", *place, due)
+            for task, (place, due) in enumerate(zip(self.task_xy.tolist(), self.deadline.tolist(), strict=True))
+        ]
+        robots = [(self.robot_name(robot), *place) for robot, place in enumerate(self.robot_xy.tolist())]
+        low, size = (tuple(each.tolist()) for each in shown_box(self))
+        picture = map_of(low, size, tasks, robots, shown_time(self, 0.0))
         return table(title, ("", "least", "mean", "most"), rows) + picture
 
 

@@ -7,13 +7,18 @@ import numpy as np
 from mrta_zoo.scales import Scales, frame_of
 from mrta_zoo.scenario import FloatArray, Scenario
 
+LEAST_FILLED = 1 / 3
+"""Of a map that is shown as a whole: how much of its longer side the mission takes up."""
 LEAST_SIDE = 0.25
 """Of the shorter side, as a share of the longer one; places may lie on a line."""
 
 
 def shown_box(scenario: Scenario) -> tuple[FloatArray, FloatArray]:
-    """Where the mission is, see `scales.frame_of`, but with room on both sides: lowest x and y, width and height."""
-    low, extent = frame_of(scenario)
+    """The map or, where the mission would be lost on it, where the mission is: lowest x and y, width and height."""
+    low, extent = np.array(scenario.map_origin), np.array(scenario.map_size)
+    frame = frame_of(scenario)
+    if frame[1].max() < LEAST_FILLED * extent.max():
+        low, extent = frame
     size = np.maximum(extent, LEAST_SIDE * extent.max())
     return low - (size - extent) / 2, size
 

@@ -25,6 +25,7 @@ def test_where() -> None:
     far = (-40.0, 5403000.0)
     moved = replace(SCENARIO, task_xy=SCENARIO.task_xy + far, robot_xy=SCENARIO.robot_xy + far, map_origin=far)
     assert box(moved) == [*far, 100, 100]
+    assert box(replace(SCENARIO, map_size=(250, 200))) == [0, 0, 250, 200]
     assert box(replace(SCENARIO, map_size=(512010, 5403010))) == [0, 0, 100, 90]  # where tasks and robots are
     line = replace(SCENARIO, task_xy=[[5, 0], [5, 40], [5, 80]], robot_xy=[[5, 0], [5, 80]], map_size=(1000, 1000))
     assert box(line) == [-5, 0, 20, 80]

@@ -84,13 +84,13 @@ class Canvas:
 
 def text_width(text: str, size: float) -> float:
     """How wide a line of text is, in pixels of the finished picture."""
-    return _font(round(SCALE * size)).size(text)[0] / SCALE
+    return _font(round(SCALE * size)).size(_shown(text))[0] / SCALE
 
 
 def fitted(name: str, otherwise: str, size: float, room: float) -> str:
     """A name in so many pixels, its end left out if need be; `otherwise` if the font lacks one of its characters."""
     metrics = _font(round(SCALE * size)).metrics
-    if metrics(_IN_NO_FONT)[0] in metrics(name):  # which it draws as boxes
+    if metrics(_IN_NO_FONT)[0] in metrics(_shown(name)):  # which it draws as boxes
         return otherwise
     if text_width(name, size) <= room:
         return name
@@ -113,7 +113,12 @@ def as_png(picture: pygame.Surface) -> bytes:
 
 @lru_cache(maxsize=1024)
 def _written(text: str, size: int, colour: str) -> pygame.Surface:
-    return _font(size).render(text, True, colour)
+    return _font(size).render(_shown(text), True, colour)
+
+
+def _shown(text: str) -> str:
+    """Text that pygame takes, and on one line: what has no letter is a space."""
+    return "".join(letter if letter.isprintable() else " " for letter in text)
 
 
 @lru_cache(maxsize=32)

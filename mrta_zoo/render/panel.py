@@ -11,6 +11,7 @@ from mrta_zoo.mission import Mission
 from mrta_zoo.palette import FAINT, INK, MISSED, URGENCY, blend, robot_colour
 from mrta_zoo.render.canvas import Canvas, fitted, text_width
 from mrta_zoo.rules import Status
+from mrta_zoo.view import shown_time
 
 _TOP, _ROW = 60.0, 22.0
 _WIDTH = 324.0
@@ -56,7 +57,7 @@ def draw_panel(canvas: Canvas, mission: Mission, doing: Sequence[str], left: flo
 def _draw_legend(canvas: Canvas, mission: Mission, left: float) -> None:
     scenario = mission.scenario
     counts = np.bincount(mission.status, minlength=len(Status)).tolist()
-    horizon = float(scenario.deadline.max())
+    horizon = shown_time(scenario, 0.0)
     tasks = scenario.num_tasks
     mark, text = left + 11, left + 29
     canvas.text(counted(tasks, "task"), (left, _TOP), 17, FAINT)

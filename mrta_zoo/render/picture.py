@@ -18,6 +18,7 @@ from mrta_zoo.render.panel import draw_panel
 from mrta_zoo.render.whereabouts import whereabouts
 from mrta_zoo.rules import Status
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.view import shown_box, shown_time
 
 SIZE = (1040, 720)
 """Width and height in pixels; both even, as video formats want."""
@@ -36,9 +37,10 @@ def draw(mission: Mission) -> pygame.Surface:
     """The mission at this moment, robots in transit where they are now, (1040, 720) pixels."""
     canvas = Canvas(SIZE, "#ffffff")
     frame = _Frame.around(mission.scenario)
-    canvas.text(mission.scenario.name[:48], (_LEFT, 27), 25, INK)
+    name = mission.scenario.name
+    canvas.text(fitted(name, name[:48], 25, _PANEL_LEFT - _LEFT - 20), (_LEFT, 27), 25, INK)
     canvas.text(f"time {mission.time:.1f}", (_PANEL_LEFT, 27), 25, INK)
-    _draw_ground(canvas, frame, mission.scenario)
+    _draw_ground(canvas, frame)
     detail = min(1.0, max(0.45, 11.0 / mission.scenario.num_tasks**0.5))  # smaller marks where there are many
     here = [whereabouts(mission, robot) for robot in range(mission.scenario.num_robots)]
     places = [frame.pixel((each.x, each.y)) for each in here]
@@ -58,41 +60,44 @@ def draw(mission: Mission) -> pygame.Surface:
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """Where the map lies: pixels per distance unit, and the pixel of 0, 0, which may be far outside the picture."""
+    """What is shown, by its lowest x and y and its size; pixels per distance unit; and its lower left pixel."""
 
+    low: tuple[float, float]
+    size: tuple[float, float]
     scale: float
-    origin: Point
+    corner: Point
 
     @classmethod
     def around(cls, scenario: Scenario) -> _Frame:
-        (width, height), (x, y) = scenario.map_size, scenario.map_origin
+        (x, y), (width, height) = (each.tolist() for each in shown_box(scenario))
         scale = min(_WIDTH / width, _HEIGHT / height)
-        left, bottom = _LEFT + (_WIDTH - scale * width) / 2, _TOP + (_HEIGHT + scale * height) / 2
-        return cls(scale, (left - scale * x, bottom + scale * y))
+        corner = _LEFT + (_WIDTH - scale * width) / 2, _TOP + (_HEIGHT + scale * height) / 2
+        return cls((x, y), (width, height), scale, corner)
 
     def pixel(self, place: tuple[float, float]) -> Point:
-        return (self.origin[0] + self.scale * place[0], self.origin[1] - self.scale * place[1])
+        (x, y), (left, bottom) = self.low, self.corner
+        return (left + self.scale * (place[0] - x), bottom - self.scale * (place[1] - y))
 
 
-def _draw_ground(canvas: Canvas, frame: _Frame, scenario: Scenario) -> None:
+def _draw_ground(canvas: Canvas, frame: _Frame) -> None:
     margin = 12.0
-    map_size, (first_x, first_y), (last_x, last_y) = scenario.map_size, scenario.map_origin, scenario.map_end
-    left, top = frame.pixel((first_x, last_y))
-    size = (frame.scale * map_size[0], frame.scale * map_size[1])
-    canvas.rectangle((left - margin, top - margin), (size[0] + 2 * margin, size[1] + 2 * margin), GROUND)
-    step = _round_step(max(map_size) / 5)
-    right, bottom = left + size[0], top + size[1]
-    for x in np.arange(np.ceil(first_x / step) * step, last_x + step / 100, step):
-        at = frame.pixel((x, 0.0))[0]
+    (left, bottom), (low_x, low_y) = frame.corner, frame.low
+    right, top = frame.pixel((low_x + frame.size[0], low_y + frame.size[1]))
+    canvas.rectangle((left - margin, top - margin), (right - left + 2 * margin, bottom - top + 2 * margin), GROUND)
+    step = _round_step(max(frame.size) / 5)
+    written = 0.0  # until where there are numbers below
+    for x in _round_numbers(low_x, frame.size[0], step):
+        at, width = frame.pixel((x, low_y))[0], text_width(_written(x), 14)
         canvas.line((at, top - margin), (at, bottom + margin), "#ffffff", 1.5)
-        canvas.text(f"{x:.10g}", (at, bottom + margin + 9), 14, FAINT, align=0.5)
-    for y in np.arange(np.ceil(first_y / step) * step, last_y + step / 100, step):
-        at = frame.pixel((0.0, y))[1]
+        if at - width / 2 > written:
+            canvas.text(_written(x), (at, bottom + margin + 9), 14, FAINT, align=0.5)
+            written = at + width / 2 + 6
+    for y in _round_numbers(low_y, frame.size[1], step):
+        at = frame.pixel((low_x, y))[1]
         canvas.line((left - margin, at), (right + margin, at), "#ffffff", 1.5)
-        text = f"{y:.10g}"
-        inside = text_width(text, 14) > left - margin - 4  # there is no room beside the map for long numbers
+        inside = text_width(_written(y), 14) > left - margin - 4  # there is no room beside the map for long numbers
         place = (left - margin + 3, at - 8) if inside else (left - margin - 4, at)
-        canvas.text(text, place, 14, FAINT, align=0.0 if inside else 1.0)
+        canvas.text(_written(y), place, 14, FAINT, align=0.0 if inside else 1.0)
 
 
 def _draw_trail(canvas: Canvas, frame: _Frame, mission: Mission, robot: int, now: Point, detail: float) -> None:
@@ -112,7 +117,7 @@ def _draw_trail(canvas: Canvas, frame: _Frame, mission: Mission, robot: int, now
 
 def _draw_tasks(canvas: Canvas, frame: _Frame, mission: Mission, detail: float) -> None:
     scenario = mission.scenario
-    horizon = float(scenario.deadline.max())
+    horizon = shown_time(scenario, 0.0)
     numbered = scenario.num_tasks <= _MOST_NUMBERED
     for task, (status, by) in enumerate(zip(mission.status.tolist(), mission.taken_by.tolist(), strict=True)):
         place = frame.pixel(tuple(scenario.task_xy[task].tolist()))
@@ -129,6 +134,16 @@ def _draw_tasks(canvas: Canvas, frame: _Frame, mission: Mission, detail: float) 
             name = fitted(scenario.task_name(task), str(task), 13, _LONGEST_NAME)
             left = place[0] + 6 + text_width(name, 13) > _PANEL_LEFT  # or it would run into the column beside the map
             canvas.text(name, (place[0] - 6 if left else place[0] + 6, place[1] - 8), 13, FAINT, align=float(left))
+
+
+def _round_numbers(low: float, size: float, step: float) -> list[float]:
+    """The multiples of a step within a range, its ends included."""
+    first, last = np.ceil(low / step - 0.01), np.floor((low + size) / step + 0.01)
+    return [step * number for number in np.arange(first, last + 1).tolist()]
+
+
+def _written(value: float) -> str:
+    return f"{value:.10g}"
 
 
 def _round_step(about: float) -> float:

@@ -45,6 +45,25 @@ def test_a_scenario():
     assert html.count("<title>robot") == 2
 
 
+def test_a_map_that_lies_elsewhere():
+    far = np.array([512000.0, -40.0])
+    moved = replace(SCENARIO, task_xy=SCENARIO.task_xy + far, robot_xy=SCENARIO.robot_xy + far,
+                    map_origin=tuple(far), task_names=("valve <A>", "B"), robot_names=("Spot", "R & D"))  # fmt: skip
+    html = shown(moved)
+    assert "map 100 by 50 from 512000, -40" in html
+    assert '<circle cx="0.0" cy="96.0"' in html
+    assert "<title>task valve &lt;A&gt;, deadline 20</title>" in html
+    assert "<title>R &amp; D</title>" in html
+    corner = shown(replace(SCENARIO, map_size=(1e6, 1e6)))  # of which only the places are shown, 50 by 50
+    assert '<circle cx="64.0" cy="320.0"' in corner
+
+
+def test_one_late_deadline_leaves_the_other_colours():
+    tasks = re.findall(r'<circle[^>]*fill="(#\w+)"', shown(replace(SCENARIO, deadline=[20, 1e9])))
+    assert tasks[0] != tasks[1]
+    assert tasks[0] != "#e03131"  # as if it was due at once
+
+
 def test_a_plan_and_its_score():
     plan = Plan.of([(0, 1), ()], "a < b", "mine")
     assert "Plan of a &lt; b by mine: 2 tasks taken" in shown(plan)

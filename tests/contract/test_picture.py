@@ -17,7 +17,7 @@ from pettingzoo.utils.wrappers import RecordVideo
 from mrta_zoo import Scenario, mrta_v0
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.mission import Mission
-from mrta_zoo.palette import blend, robot_colour
+from mrta_zoo.palette import GROUND, blend, robot_colour
 from mrta_zoo.render.canvas import as_array, fitted, text_width
 from mrta_zoo.render.picture import draw
 from mrta_zoo.render.window import Window
@@ -172,6 +172,7 @@ def test_record_video_makes_an_mp4(tmp_path):
 def test_without_pygame_the_error_names_the_extra():
     code = """
 import sys
+from dataclasses import replace
 sys.modules["pygame"] = None
 from mrta_zoo import mrta_v0
 from mrta_zoo.errors import MissingExtraError
@@ -221,3 +222,23 @@ def test_a_map_may_lie_anywhere(mission, corner):
     assert (one != other).mean() < 0.01  # the grid's numbers are others
     picture = as_array(draw(moved))
     assert pixel(picture, 50 - 6 / PIXELS, 80) == rgb(robot_colour(1))
+
+
+def test_a_mission_in_the_corner_of_a_large_map_fills_the_picture(mission):
+    large = as_array(draw(Mission(replace(mission.scenario, map_size=(512010, 5403010)))))
+    ink = (large[60:680, 40:676] != rgb(GROUND)).any(axis=2) & (large[60:680, 40:676] != 255).any(axis=2)
+    rows, columns = np.flatnonzero(ink.any(axis=1)), np.flatnonzero(ink.any(axis=0))
+    assert rows[-1] - rows[0] > 550
+    assert columns[-1] - columns[0] > 550
+
+
+@pytest.mark.parametrize("name", ["a\0b", "two\nlines", "工场", "long " * 40, "$x$ <b>"])
+def test_any_name_is_drawn(mission, name):
+    assert as_array(draw(Mission(replace(mission.scenario, name=name)))).shape == SIZE
+
+
+def test_one_late_deadline_leaves_the_other_colours(mission):
+    urgent = replace(mission.scenario, deadline=[100, 100, 100, 1e9])
+    picture, place = as_array(draw(Mission(urgent))), (20.0, 60.0)
+    assert pixel(picture, *place) not in ([255, 255, 255], [245, 246, 248])
+    assert pixel(picture, *place)[1] > 80  # not as red as if it was due at once
