@@ -1,109 +1,222 @@
-// What is drawn by Plotly: who does what when, and how many tasks are completed. Both are drawn once; a cursor, which is
-// no part of the plot and so costs nothing, shows the moment.
-const LEFT = 62, RIGHT = 8, TOP = 6, BOTTOM = 22; // margins of both, in pixels
-const plotOptions = { displayModeBar: false, responsive: true };
-const plain = (text) => text.replace(/&/g, "&amp;").replace(/</g, "&lt;"); // Plotly reads some HTML in its texts
+"use strict";
+// Who does what when, and how many tasks are completed, over time, as SVG in pixels. Both are drawn anew when their width
+// changes or one drags over a span of time to see more of it; otherwise only a cursor moves.
+const ABOVE = 4, BELOW = 20, RIGHT = 10, EDGE = 4; // margins, in pixels, and room for marks at the end
+const BAR = many ? 9 : 17, APART = many ? 3 : 7, LANE = 3, TICKS = 4; // heights
+const MOST_LANES = 900; // height of all lanes together; with more, deadlines are ticks, joined to the task pointed at only
+const TEXT = 11; // its size
+const DRAG = 6; // pixels from which on a click is a drag
 
-const chartLayout = () => ({
-  margin: { l: LEFT, r: RIGHT, t: TOP, b: BOTTOM }, plot_bgcolor: colours.ground, paper_bgcolor: "white",
-  font: { family: 'system-ui, "Segoe UI", "DejaVu Sans", sans-serif', size: 11, color: colours.faint },
-  hovermode: "closest", xaxis: { range: [-0.01 * end, 1.01 * end], gridcolor: "white", zeroline: false },
-});
-
-/** A plot with a cursor, which `moveTo` moves. */
+/** A chart over time with a cursor, which `moveTo` moves. */
 class Chart {
-  constructor(box, height) {
-    box.style.height = `${height}px`;
-    this.plot = box.appendChild(element("div", "", { class: "plot" }));
-    this.cursor = box.appendChild(element("div", "", { class: "cursor" }));
+  constructor(box, height, onTime) {
     this.box = box;
+    this.height = height;
     this.time = 0;
+    this.span = [0, end];
+    this.svg = box.appendChild(svg("svg", { class: "chart", height: ABOVE + height + BELOW }));
+    this.listen(onTime);
+    new ResizeObserver(() => { if (this.width !== box.clientWidth) this.draw(); }).observe(box);
   }
 
-  draw(traces, layout) {
-    Plotly.newPlot(this.plot, traces, layout, plotOptions);
-    this.plot.on("plotly_relayout", () => this.moveTo(this.time)); // zoomed, or of another size
+  draw() {
+    this.width = this.box.clientWidth;
+    this.room = Math.max(this.width - this.left() - RIGHT, 10);
+    this.svg.setAttribute("width", this.width);
+    this.inner = svg("svg", { x: this.left(), y: ABOVE, width: this.room, height: this.height }); // cuts off
+    this.inner.append(svg("rect", { width: this.room, height: this.height, fill: colours.ground }));
+    this.svg.replaceChildren(this.inner);
+    const widest = textWidth(`${Number(this.span[1].toPrecision(3))}`, TEXT) + 24;
+    for (const value of roundNumbers(...this.span, Math.max(1, Math.min(10, Math.floor(this.room / widest))))) {
+      const x = this.at(value), half = textWidth(`${value}`, TEXT) / 2;
+      this.inner.append(svg("line", { class: "grid", x1: x, x2: x, y1: 0, y2: this.height }));
+      if (this.left() + x + half <= this.width)
+        this.svg.append(svg("text", { class: "tick", x: this.left() + x, y: ABOVE + this.height + 14 }, `${value}`));
+    }
+    this.fill();
+    this.cursor = this.inner.appendChild(svg("line", { class: "cursor", y1: 0, y2: this.height }));
+    this.moveTo(this.time);
   }
 
-  /** Pixels from the left edge, cut off where the plot ends. */
-  pixel(time) {
-    const [first, last] = this.plot.layout.xaxis.range, width = this.box.clientWidth - LEFT - RIGHT;
-    return LEFT + Math.min(Math.max((width * (time - first)) / (last - first), 0), width);
+  /** Pixels from where the time begins. */
+  at(time) {
+    return ((this.room - EDGE) * (time - this.span[0])) / (this.span[1] - this.span[0]);
+  }
+
+  timeAt(clientX) {
+    const share = (clientX - this.svg.getBoundingClientRect().left - this.left()) / (this.room - EDGE);
+    return this.span[0] + Math.min(Math.max(share, 0), 1) * (this.span[1] - this.span[0]);
   }
 
   moveTo(time) {
     this.time = time;
-    this.cursor.style.left = `${this.pixel(time)}px`;
+    for (const end of ["x1", "x2"]) this.cursor.setAttribute(end, this.at(time));
+  }
+
+  /** A click is a time, a drag the span to be shown; a double click shows all. */
+  listen(onTime) {
+    let begun = null;
+    this.svg.addEventListener("pointerdown", (event) => { begun = event.clientX; });
+    this.svg.addEventListener("pointerup", (event) => {
+      const from = begun;
+      begun = null;
+      if (from === null || event.button !== 0) return;
+      if (Math.abs(event.clientX - from) < DRAG) return onTime(event);
+      this.span = [from, event.clientX].map((x) => this.timeAt(x)).sort((a, b) => a - b);
+      if (!(this.span[1] > this.span[0])) this.span = [0, end];
+      this.draw();
+    });
+    this.svg.addEventListener("dblclick", () => { this.span = [0, end]; this.draw(); });
   }
 }
 
-/** Bars for travel and work of every robot, and a tick for the deadline of each task under its bar. */
+/** Bars for travel and work of every robot, and from each bar a line to its task's deadline. */
 class Gantt extends Chart {
-  constructor(box, visits, onPick) {
-    const rows = Math.max(place.robots.length, 4), row = many ? 11 : 25;
-    super(box, TOP + BOTTOM + rows * row);
-    this.row = row;
-    this.picked = box.insertBefore(element("div", "", { class: "picked" }), this.cursor);
-    const colour = (kept) => kept.map(({ robot }) => robotColour(robot));
-    const bars = (kept, width, from, to, look) => ({
-      type: "bar", orientation: "h", width, y: kept.map(({ robot }) => robot), base: kept.map(({ visit }) => visit[from]),
-      x: kept.map(({ visit }) => visit[to] - visit[from]), customdata: kept.map(({ visit }) => visit[1]),
-      hoverinfo: "text", hovertext: kept.map(story), ...look,
+  constructor(box, routes, onPick, onLook) {
+    const lanes = (route, inTime) => 1 + Math.max(-1, ...route.filter((visit) => visit[5] === inTime).map((visit) => visit[6]));
+    const counts = routes.map((route) => [lanes(route, false), lanes(route, true)]);
+    const lane = LANE * counts.flat().reduce((sum, count) => sum + count, 0) <= MOST_LANES ? LANE : 0;
+    let height = 0;
+    const rows = counts.map(([above, below]) => {
+      const top = height;
+      height += APART + BAR + (lane ? lane * (above + below) : TICKS);
+      return { top, bar: top + APART / 2 + lane * above, above, below, height: height - top };
     });
-    const onTime = visits.filter(({ visit }) => visit[5]), late = visits.filter(({ visit }) => !visit[5]);
-    const text = (kept, color) => many ? {} : { text: kept.map(({ visit }) => `${visit[0]}`), textposition: "inside",
-      insidetextanchor: "middle", textangle: 0, textfont: { color, size: 10 } };
-    this.draw([
-      bars(visits, 0.08, 2, 3, { marker: { color: colour(visits) } }),
-      bars(onTime, 0.6, 3, 4, { marker: { color: colour(onTime), line: { color: "white", width: many ? 0.3 : 1 } },
-        ...text(onTime, "white") }),
-      bars(late, 0.56, 3, 4, { marker: { color: "white", line: { color: colours.missed, width: 1.5 } },
-        ...text(late, "black") }),
-      { type: "scatter", mode: "markers", x: visits.map(({ visit }) => place.tasks[visit[0]][2]),
-        y: visits.map(({ robot }) => robot + 0.4), customdata: visits.map(({ visit }) => visit[1]), hoverinfo: "text",
-        hovertext: visits.map(story), marker: { symbol: "line-ns", size: many ? 3 : 5, opacity: 1,
-          line: { width: many ? 1 : 1.5, color: colour(visits) } } },
-    ], {
-      ...chartLayout(), barmode: "overlay", showlegend: false,
-      yaxis: { range: [rows - 0.5, -0.5], tickvals: place.robots.map((_, robot) => robot), zeroline: false,
-        ticktext: place.robots.map((_, robot) => many ? `${robot}` : `robot ${robot}`), showgrid: false,
-        tickfont: { size: many ? 8 : 11 }, fixedrange: true },
+    super(box, Math.max(height, 60), (event) => {
+      const visit = event.target.closest(".visit");
+      if (visit) onPick(Number(visit.dataset.decision));
     });
-    this.plot.on("plotly_click", ({ points }) => onPick(points[0].customdata));
+    Object.assign(this, { routes, rows, lane, looked: null });
+    this.svg.addEventListener("pointerover", (event) => {
+      const visit = event.target.closest(".visit");
+      onLook(visit ? Number(visit.dataset.task) : null);
+    });
+    this.svg.addEventListener("pointerleave", () => onLook(null));
+    this.draw();
+  }
+
+  /** Room for the names of robots. */
+  left() {
+    const widest = Math.max(...place.robot_names.map((name) => textWidth(many ? "999" : name, TEXT)));
+    return Math.min(widest + 8, Math.max(78, 0.16 * this.box.clientWidth));
+  }
+
+  fill() {
+    this.picked = this.inner.appendChild(svg("rect", { class: "picked", visibility: "hidden" }));
+    this.visits = new Map();
+    this.routes.forEach((route, robot) => {
+      const name = many ? `${robot}` : fitted(place.robot_names[robot], this.left() - 8, TEXT);
+      this.svg.append(svg("text", { class: "who", x: this.left() - 6, y: ABOVE + this.rows[robot].bar + BAR / 2 + 4,
+        fill: robotColour(robot), "data-robot": robot }, name));
+      for (const visit of route) this.inner.append(this.visit(robot, visit));
+    });
+    if (this.marked) this.mark(...this.marked);
+    this.look(this.looked);
+  }
+
+  visit(robot, visit) {
+    const [task, decision, leave, arrive, finish, inTime] = visit, { bar } = this.rows[robot];
+    const [left, from, to] = [leave, arrive, finish].map((time) => this.at(time)), middle = bar + BAR / 2;
+    const group = svg("g", { class: inTime ? "visit" : "visit late", "data-task": task, "data-decision": decision,
+      color: robotColour(robot) });
+    const way = this.wayToDeadline(robot, visit, to);
+    group.append(
+      svg("title", {}, story(robot, visit)),
+      svg("path", { class: "hit", d: way }),
+      svg("path", { class: this.lane ? "due" : "due quiet", d: way }),
+      svg("line", { class: "travel", x1: left, x2: from, y1: middle, y2: middle }),
+      svg("rect", { class: to - from > 2.5 ? "work" : "work thin", x: from, y: bar, width: Math.max(to - from, 0.5),
+        height: BAR }),
+      ...this.tick(robot, visit),
+    );
+    if (!many) group.append(...this.name(place.task_names[task], (from + to) / 2, middle, to - from - 4));
+    this.visits.set(task, group);
+    return group;
+  }
+
+  /** The name of a task in its bar, upright or on its side, if there is room for it. */
+  name(name, x, y, room) {
+    const upright = fitted(name, room, TEXT - 1), turned = room >= 7 && upright !== name ? fitted(name, BAR - 2, TEXT - 1) : "";
+    const side = turned.length > upright.length;
+    if (!upright && !turned) return [];
+    return [svg("text", { class: "what", x, y: y + 3.5, ...(side && { transform: `rotate(-90 ${x} ${y})` }) },
+      side ? turned : upright)];
+  }
+
+  /** The height of the line to a deadline. */
+  lineAt(robot, [, , , , , inTime, lane]) {
+    const { bar, above, below } = this.rows[robot];
+    if (!this.lane) return bar + BAR + 0.6 * TICKS;
+    return inTime ? bar + BAR + this.lane * (below - lane - 0.2) : bar - this.lane * (above - lane - 0.4);
+  }
+
+  wayToDeadline(robot, visit, from) {
+    const { bar } = this.rows[robot], y = this.lineAt(robot, visit);
+    const due = this.at(Math.min(place.tasks[visit[0]][2], end));
+    return `M${from} ${visit[5] ? bar + BAR : bar}V${y}H${due}`;
+  }
+
+  /** The mark of a deadline: a tick, or an arrow where it is later than what is shown. */
+  tick(robot, visit) {
+    const due = place.tasks[visit[0]][2], x = this.at(Math.min(due, end)), y = this.lineAt(robot, visit);
+    const marks = [svg("path", { class: "deadline", d: due > end ? `M${x - 5} ${y - 3}l5 3l-5 3z` : `M${x} ${y - 1.5}v3` })];
+    if (!visit[5]) {
+      const to = this.at(visit[4]);
+      marks.push(svg("path", { class: "missed", d: `M${to - 3} ${y - 3}l6 6m-6 0l6 -6` }));
+    }
+    return marks;
   }
 
   /** Mark a robot's time from a decision to its end. */
   mark(robot, from, to) {
     this.marked = [robot, from, to];
-    const left = this.pixel(from);
-    Object.assign(this.picked.style, { left: `${left}px`, width: `${this.pixel(to) - left}px`,
-      top: `${TOP + robot * this.row}px`, height: `${this.row}px` });
+    const x = this.at(from), { top, height } = this.rows[robot];
+    for (const [name, value] of Object.entries({ x, y: top, width: Math.max(this.at(to) - x, 0), height,
+      visibility: "visible" })) this.picked.setAttribute(name, value);
   }
 
-  moveTo(time) {
-    super.moveTo(time);
-    if (this.marked) this.mark(...this.marked);
+  /** Highlight a task with its deadline; null highlights none. */
+  look(task) {
+    this.visits.get(this.looked)?.classList.remove("looked");
+    this.visits.get(task)?.classList.add("looked");
+    this.looked = task;
   }
 }
 
 /** Completed tasks over time, a line for each episode. */
 class Progress extends Chart {
   constructor(box, episodes, onPick) {
-    super(box, 140);
-    this.draw(episodes.map(({ method, routes }, index) => {
-      const times = routes.flat().filter((visit) => visit[5]).map((visit) => visit[4]).sort((a, b) => a - b);
-      return { type: "scatter", mode: "lines", x: [0, ...times, end], y: [0, ...times.map((_, count) => count + 1),
-        times.length], line: { shape: "hv", color: SIDE_COLOURS[index], width: 2.2 }, name: plain(method),
-      hovertemplate: "%{y} completed by %{x:.4~g}" };
-    }), {
-      ...chartLayout(), showlegend: episodes.length > 1, legend: { x: 0.01, y: 0.98, bgcolor: "rgba(0,0,0,0)" },
-      yaxis: { gridcolor: "white", zeroline: false, title: { text: "completed" }, rangemode: "tozero", fixedrange: true },
+    super(box, 116, (event) => onPick(this.timeAt(event.clientX)));
+    this.lines = episodes.map(({ method, routes }) => ({ method,
+      times: routes.flat().filter((visit) => visit[5]).map((visit) => visit[4]).sort((a, b) => a - b) }));
+    this.most = Math.max(1, ...this.lines.map(({ times }) => times.length));
+    this.draw();
+  }
+
+  left() {
+    return Math.max(textWidth(`${this.most}`, TEXT) + 10, 30);
+  }
+
+  fill() {
+    const up = (count) => this.height - 4 - ((this.height - 20) * count) / this.most;
+    for (const count of roundNumbers(0, this.most, Math.min(5, this.most))) {
+      this.inner.append(svg("line", { class: "grid", x1: 0, x2: this.room, y1: up(count), y2: up(count) }));
+      this.svg.append(svg("text", { class: "who", x: this.left() - 6, y: ABOVE + up(count) + 4 }, `${count}`));
+    }
+    this.lines.forEach(({ method, times }, index) => {
+      const steps = times.map((time, count) => `H${this.at(time)}V${up(count + 1)}`).join("");
+      this.inner.append(svg("path", { class: "progress", stroke: SIDE_COLOURS[index],
+        d: `M${this.at(0)} ${up(0)}${steps}H${this.at(end)}` }));
+      const y = 14 + 15 * index;
+      if (this.lines.length > 1) this.inner.append(
+        svg("line", { x1: 8, x2: 26, y1: y - 4, y2: y - 4, stroke: SIDE_COLOURS[index], "stroke-width": 3 }),
+        svg("text", { class: "method", x: 31, y }, fitted(method, this.room / 2, TEXT)));
     });
-    this.plot.on("plotly_click", ({ points }) => onPick(points[0].x));
+    this.inner.append(svg("text", { class: "unit", x: this.room - 6, y: this.height - 8 }, "tasks completed"));
   }
 }
 
-function story({ robot, visit: [task, decision, leave, arrive, finish] }) {
-  return `robot ${robot}, task ${task}<br>leaves ${number(leave)}, arrives ${number(arrive)}, done ${number(finish)}` +
-    `<br>due ${number(place.tasks[task][2])}<br>decision ${decision}`;
+function story(robot, [task, decision, leave, arrive, finish]) {
+  return `${place.robot_names[robot]}, task ${place.task_names[task]}\nleaves ${number(leave)}, arrives ${number(arrive)}, ` +
+    `done ${number(finish)}\ndue ${number(place.tasks[task][2])}\ndecision ${decision}`;
 }

@@ -11,18 +11,30 @@ import numpy.typing as npt
 
 from mrta_zoo.debug.outlook import outlook
 from mrta_zoo.debug.percent import percent
+from mrta_zoo.lanes import deadline_lanes
 from mrta_zoo.mission import Mission
 from mrta_zoo.rules import MaskReason, Status
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import Choice, Trace
 from mrta_zoo.verify import verify
+from mrta_zoo.view import shown_box, shown_time
 
 MOST_CANDIDATES, MOST_MASKED = 10, 4
 """Tasks listed at each decision: the best of those that may be chosen, and the nearest of those that may not."""
 
 
 class Visit(msgspec.Struct, frozen=True, array_like=True):
-    """A task on a robot's route: the decision to take it, and when the robot leaves for it, arrives and is done."""
+    """A task on a robot's route.
+
+    Attributes:
+        task: the task.
+        decision: the one to take it.
+        leave: when the robot leaves for it.
+        arrive: when it gets there.
+        finish: when it is done.
+        completed: whether that is by the deadline.
+        lane: where in the chart the line to its deadline lies, see `lanes.deadline_lanes`.
+    """
 
     task: int
     decision: int
@@ -30,6 +42,7 @@ class Visit(msgspec.Struct, frozen=True, array_like=True):
     arrive: float
     finish: float
     completed: bool
+    lane: int
 
 
 class Candidate(msgspec.Struct, frozen=True, array_like=True):
@@ -100,11 +113,17 @@ class Episode(msgspec.Struct, frozen=True):
 
 
 class Place(msgspec.Struct, frozen=True):
-    """The scenario, as far as the page shows it."""
+    """The scenario, as far as the page shows it, and what of the plane and of time is shown, see `mrta_zoo.view`."""
 
     name: str
-    width: float
-    height: float
+    low: tuple[float, float]
+    """Lowest x and y."""
+    size: tuple[float, float]
+    """Width and height."""
+    horizon: float
+    """The latest deadline that can matter."""
+    end: float
+    """Of the time shown."""
     tasks: list[tuple[float, float, float, float]]
     """x, y, deadline and workload of each."""
     robots: list[tuple[float, float, float, float]]
@@ -115,26 +134,41 @@ class Place(msgspec.Struct, frozen=True):
     """Likewise: its name, or "robot" and its number."""
 
 
-def place_of(scenario: Scenario) -> Place:
-    """The scenario for the page."""
+def place_of(scenario: Scenario, makespan: float) -> Place:
+    """The scenario for the page.
+
+    Args:
+        scenario: to be shown.
+        makespan: of the longest episode.
+    """
+    low, size = shown_box(scenario)
     tasks = np.column_stack((scenario.task_xy, scenario.deadline, scenario.workload))
     robots = np.column_stack((scenario.robot_xy, scenario.capacity, scenario.speed))
-    task_names = [scenario.task_name(task) for task in range(scenario.num_tasks)]
-    robot_names = [scenario.robot_name(robot) for robot in range(scenario.num_robots)]
-    return Place(scenario.name, *scenario.map_size, tasks.tolist(), robots.tolist(), task_names, robot_names)
+    return Place(
+        name=scenario.name,
+        low=tuple(low.tolist()),
+        size=tuple(size.tolist()),
+        horizon=shown_time(scenario, 0.0),
+        end=shown_time(scenario, makespan),
+        tasks=tasks.tolist(),
+        robots=robots.tolist(),
+        task_names=[scenario.task_name(task) for task in range(scenario.num_tasks)],
+        robot_names=[scenario.robot_name(robot) for robot in range(scenario.num_robots)],
+    )
 
 
 def episode_of(trace: Trace) -> Episode:
     """The episode for the page; its visits' times are the verifier's."""
     score = verify(trace.scenario, trace.plan())
+    lanes = [deadline_lanes(visits) for visits in score.schedule]
     routes: list[list[Visit]] = [[] for _ in range(trace.scenario.num_robots)]
     decisions = []
     for mission, decision in trace.replay():
         route = routes[decision.robot]
         if decision.choice.task is not None:
-            visit = score.schedule[decision.robot][len(route)]
+            visit, lane = score.schedule[decision.robot][len(route)], lanes[decision.robot][len(route)]
             leave, arrive, finish = map(_short, (decision.time, visit.arrival, visit.finish))
-            route.append(Visit(visit.task, decision.index, leave, arrive, finish, visit.completed))
+            route.append(Visit(visit.task, decision.index, leave, arrive, finish, visit.completed, lane))
         decisions.append(_decision(mission, decision.choice))
     return Episode(
         method=trace.method or "unnamed",

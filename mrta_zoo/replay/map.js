@@ -1,17 +1,12 @@
+"use strict";
 // The map of one side, as SVG: tasks by status, robots where they are at the moment shown, their trails, and where they
-// are heading. Wheel and drag zoom and move it, a double click resets it.
+// are heading. Wheel and drag zoom and move it, a double click resets it. Text is as large as anywhere on the page.
 const SIDE_LENGTH = 520; // of the longer side, in the SVG's units
 const MARGIN = 16;
-const AXIS = 26; // room for the numbers
+const AXIS = { size: 11, below: 20 }; // numbers: their size and room below the map, in pixels
+const LABEL = { size: 10, most: 300, longest: 70 }; // tasks' names: size and longest in pixels; tasks that have them, at most
 const RECENT = 4; // legs of a trail that is cut, where there are many robots
 const SHADES = 24; // of urgency
-
-function svg(tag, attributes, text = "") {
-  const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-  if (text) made.textContent = text;
-  return made;
-}
 
 /** The colour of a task by the share of all time that is left to its deadline. */
 function urgency(share) {
@@ -22,13 +17,14 @@ function urgency(share) {
 }
 
 class MapView {
-  constructor(box) {
-    const scale = SIDE_LENGTH / Math.max(place.width, place.height);
-    this.size = [scale * place.width, scale * place.height];
-    this.at = ([x, y]) => [scale * x, this.size[1] - scale * y];
+  constructor(box, onLook) {
+    this.box = box;
+    this.onLook = onLook;
+    const scale = SIDE_LENGTH / Math.max(...place.size), [x, y] = place.low;
+    this.size = place.size.map((length) => scale * length);
+    this.at = (spot) => [scale * (spot[0] - x), this.size[1] - scale * (spot[1] - y)];
     this.svg = svg("svg", { class: "plan" });
-    this.reset();
-    this.ground();
+    this.ground = this.add("g", {});
     const detail = Math.min(1, Math.max(0.5, 12 / Math.sqrt(place.tasks.length)));
     this.detail = detail;
     this.trails = place.robots.map((_, robot) => this.add("polyline", { class: "trail", stroke: robotColour(robot),
@@ -41,34 +37,58 @@ class MapView {
         stroke: robotColour(robot) });
     });
     this.tasks = place.tasks.map((each, task) => this.task(each, task));
+    this.labels = this.add("g", { class: "labels" });
     this.looked = this.add("circle", { r: 11, class: "looked" });
     this.acting = this.add("circle", { r: many ? 12 : 15, class: "acting" });
     this.robots = place.robots.map((each, robot) => this.robot(each, robot));
     this.listen();
     box.append(this.svg);
+    new ResizeObserver(() => { if (this.width !== box.clientWidth) this.reset(); }).observe(box);
+    this.reset();
   }
 
   add(tag, attributes, text) {
     return this.svg.appendChild(svg(tag, attributes, text));
   }
 
-  ground() {
-    const [width, height] = this.size, longer = Math.max(place.width, place.height);
-    this.add("rect", { x: -MARGIN, y: -MARGIN, width: width + 2 * MARGIN, height: height + 2 * MARGIN,
-      fill: colours.ground });
-    const power = 10 ** Math.floor(Math.log10(longer / 4));
-    const step = power * [1, 2, 5].findLast((each) => each * power <= longer / 4);
-    for (let value = 0; value <= longer * 1.0001; value += step) {
-      const label = `${Number(value.toPrecision(6))}`, [x, y] = this.at([value, value]);
-      if (value <= place.width * 1.0001) {
-        this.add("line", { class: "grid", x1: x, x2: x, y1: -MARGIN, y2: height + MARGIN });
-        this.add("text", { class: "axis", x, y: height + MARGIN + 14, "text-anchor": "middle" }, label);
-      }
-      if (value <= place.height * 1.0001) {
-        this.add("line", { class: "grid", x1: -MARGIN, x2: width + MARGIN, y1: y, y2: y });
-        this.add("text", { class: "axis", x: -MARGIN - 5, y: y + 4, "text-anchor": "end" }, label);
-      }
+  /** Ground, grid and numbers. */
+  drawGround() {
+    const [width, height] = this.size, px = this.perPixel, [[left, right], [low, high]] = [0, 1].map((axis) =>
+      [place.low[axis], place.low[axis] + place.size[axis]]);
+    this.ground.replaceChildren(svg("rect", { x: -MARGIN, y: -MARGIN, width: width + 2 * MARGIN,
+      height: height + 2 * MARGIN, fill: colours.ground }));
+    const wide = Math.max(...[left, right].map((value) => textWidth(`${Math.round(value)}`, AXIS.size))) + 16;
+    const about = (length, room) => Math.max(1, Math.min(5, Math.floor(length / px / room)));
+    for (const value of roundNumbers(left, right, about(width, wide))) {
+      const [x] = this.at([value, low]);
+      this.ground.append(svg("line", { class: "grid", x1: x, x2: x, y1: -MARGIN, y2: height + MARGIN }),
+        svg("text", { class: "axis below", x, y: height + MARGIN + 14 * px, "font-size": AXIS.size * px }, `${value}`));
     }
+    for (const value of this.upNumbers()) {
+      const [, y] = this.at([left, value]);
+      this.ground.append(svg("line", { class: "grid", x1: -MARGIN, x2: width + MARGIN, y1: y, y2: y }),
+        svg("text", { class: "axis", x: -MARGIN - 5 * px, y: y + 4 * px, "font-size": AXIS.size * px }, `${value}`));
+    }
+  }
+
+  /** The numbers at the left. */
+  upNumbers() {
+    return roundNumbers(place.low[1], place.low[1] + place.size[1], place.size[1] < place.size[0] / 2 ? 2 : 5);
+  }
+
+  /** Names of tasks that have room at this size, the others without. */
+  drawLabels() {
+    if (place.tasks.length > LABEL.most) return;
+    const px = this.perPixel, size = LABEL.size, spots = place.tasks.map((task) => this.at(task).map((each) => each / px));
+    const homes = place.robots.map((robot) => this.at(robot).map((each) => each / px));
+    const box = (side) => ([x, y]) => [x - side, y - side, x + side, y + side];
+    const names = place.task_names.map((name) => fitted(name, LABEL.longest, size));
+    const radius = (6.5 * this.detail) / px;
+    const frame = [-MARGIN, -MARGIN, this.size[0] + 2 * MARGIN, this.size[1] + 2 * MARGIN].map((each) => each / px);
+    const found = placesOfLabels(spots, names, size, radius + 0.5, [...spots.map(box(radius)), ...homes.map(box(5 / px))],
+      frame);
+    this.labels.replaceChildren(...found.flatMap((spot, task) => spot && names[task] ? [svg("text", { x: spot[0] * px,
+      y: spot[1] * px, "font-size": size * px, "stroke-width": 2.5 * px, "data-task": task }, names[task])] : []));
   }
 
   task([x, y, deadline, work], task) {
@@ -76,7 +96,9 @@ class MapView {
     const mark = this.add("g", { class: "task", "data-task": task,
       transform: `translate(${left} ${top}) scale(${this.detail})` });
     mark.append(svg("circle", {}), svg("path", { d: "M-4 -4 4 4M-4 4 4 -4" }),
-      svg("title", {}, `task ${task}: due ${number(deadline)}, work ${work}`));
+      svg("title", {}, `task ${place.task_names[task]}: due ${number(deadline)}, work ${work}`));
+    mark.addEventListener("pointerenter", () => this.onLook(task));
+    mark.addEventListener("pointerleave", () => this.onLook(null));
     return mark;
   }
 
@@ -84,7 +106,7 @@ class MapView {
     const mark = this.add("g", { class: "robot", "data-robot": robot });
     mark.append(svg("circle", { r: many ? 8.5 : 11, fill: robotColour(robot) }),
       svg("text", { y: many ? 3 : 4, "font-size": many ? 8.5 : 12 }, `${robot}`),
-      svg("title", {}, `robot ${robot}: capacity ${capacity}, speed ${speed}`));
+      svg("title", {}, `${place.robot_names[robot]}: capacity ${capacity}, speed ${speed}`));
     return mark;
   }
 
@@ -124,25 +146,38 @@ class MapView {
       this.ahead[robot].setAttribute(end, value));
   }
 
+  /** Show all of it, as large as there is room. */
   reset() {
-    this.view = [-MARGIN - AXIS, -MARGIN, this.size[0] + 2 * MARGIN + AXIS, this.size[1] + 2 * MARGIN + AXIS];
-    this.svg.setAttribute("viewBox", this.view.join(" "));
+    this.width = this.box.clientWidth;
+    const high = this.svg.clientHeight || 1, [width, height] = this.size.map((each) => each + 2 * MARGIN);
+    const beside = Math.max(...this.upNumbers().map((value) => textWidth(`${value}`, AXIS.size))) + 8;
+    const beyond = textWidth(`${Math.round(place.low[0] + place.size[0])}`, AXIS.size) / 2;
+    const px = Math.max(width / Math.max(this.width - beside - beyond, 10), height / Math.max(high - AXIS.below, 10));
+    const spare = (this.width * px - width - (beside + beyond) * px) / 2;
+    this.show([-MARGIN - beside * px - spare, -MARGIN, this.width * px, high * px]);
+  }
+
+  show(view) {
+    const { perPixel } = this;
+    this.view = view;
+    this.perPixel = view[2] / Math.max(this.width, 1);
+    this.svg.setAttribute("viewBox", view.join(" "));
+    if (perPixel === this.perPixel) return;
+    this.drawGround();
+    this.drawLabels();
   }
 
   listen() {
-    const scale = () => this.view[2] / this.svg.getBoundingClientRect().width;
     this.svg.addEventListener("wheel", (event) => {
       event.preventDefault();
       const zoom = event.deltaY < 0 ? 0.8 : 1.25, { x, y } = this.svg.getBoundingClientRect();
-      const pointer = [event.clientX - x, event.clientY - y].map((value, axis) => this.view[axis] + scale() * value);
-      this.view = this.view.map((value, part) => part < 2 ? pointer[part] + zoom * (value - pointer[part]) : zoom * value);
-      this.svg.setAttribute("viewBox", this.view.join(" "));
+      const pointer = [event.clientX - x, event.clientY - y].map((value, axis) => this.view[axis] + this.perPixel * value);
+      this.show(this.view.map((value, part) => part < 2 ? pointer[part] + zoom * (value - pointer[part]) : zoom * value));
     }, { passive: false });
     this.svg.addEventListener("pointermove", (event) => {
       if (event.buttons !== 1) return;
-      this.view[0] -= scale() * event.movementX;
-      this.view[1] -= scale() * event.movementY;
-      this.svg.setAttribute("viewBox", this.view.join(" "));
+      const [left, top, ...size] = this.view;
+      this.show([left - this.perPixel * event.movementX, top - this.perPixel * event.movementY, ...size]);
     });
     this.svg.addEventListener("dblclick", () => this.reset());
   }

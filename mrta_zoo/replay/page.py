@@ -1,7 +1,4 @@
-"""The replay as one self-contained page of HTML: data, drawing code and library in one file.
-
-Needs Plotly (``mrta_zoo[replay]``), whose JavaScript goes into the page, so that it opens with no network.
-"""
+"""The replay as one self-contained page of HTML: data and drawing code in one file, which opens with no network."""
 
 from __future__ import annotations
 
@@ -15,7 +12,6 @@ import msgspec
 
 from mrta_zoo import palette
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.extras import require
 from mrta_zoo.io.source import write_text
 from mrta_zoo.replay.episode import Episode, Place, episode_of, place_of
 from mrta_zoo.trace import Trace
@@ -42,7 +38,6 @@ def replay_page(traces: Sequence[Trace]) -> str:
 
     Raises:
         ConfigError: if there are more, none, or two of different scenarios.
-        MissingExtraError: if Plotly is not installed.
     """
     if not 1 <= len(traces) <= MOST_SIDES:
         raise ConfigError(f"there are {len(traces)} episodes to replay; expected one, or two to compare")
@@ -50,16 +45,16 @@ def replay_page(traces: Sequence[Trace]) -> str:
     if any(trace.scenario != scenario for trace in traces):
         names = " and ".join(repr(trace.scenario.name) for trace in traces)
         raise ConfigError(f"the episodes are of different scenarios, {names}; expected two of the same")
-    require("replay", "a replay page")
-    from plotly.offline import get_plotlyjs  # optional, and slow to import
-
-    document = Document(place_of(scenario), [episode_of(trace) for trace in traces], COST, _colours())
+    episodes = [episode_of(trace) for trace in traces]
+    makespan = max(episode.makespan for episode in episodes)
+    document = Document(place_of(scenario, makespan), episodes, COST, _colours())
     return Template(_part("replay.html")).substitute(
         title=escape(scenario.name),
         style=_part("replay.css"),
-        plotly=get_plotlyjs(),
         # In HTML nothing but "</script" and "<!--" ends or changes a script, and JSON can do without "<".
         data=msgspec.json.encode(document).decode().replace("<", "\\u003c"),
+        given=_part("given.js"),
+        lettering=_part("lettering.js"),
         map=_part("map.js"),
         charts=_part("charts.js"),
         replay=_part("replay.js"),

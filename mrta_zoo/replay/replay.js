@@ -1,27 +1,7 @@
 "use strict";
-// The page was given the scenario (`place`) and one or two episodes of it. All times come from there; what is worked out
-// here is only what holds at the moment shown. Maps are in map.js, charts in charts.js.
-const { place, episodes, cost, colours } = JSON.parse(document.getElementById("data").textContent);
-const SIDE_COLOURS = ["#1864ab", "#c2255c"];
+// The sides of the page, and the moment that they show.
 const REASONS = ["to choose from", "taken", "deadline passed", "too late"]; // by rules.MaskReason
 const WHOLE_PLAY = 40; // seconds that an episode takes at speed 1
-const MANY_ROBOTS = 20; // with more there is less text, and trails are cut
-
-const byId = (id) => document.getElementById(id);
-const counted = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
-const robotColour = (robot) => colours.robots[robot % colours.robots.length];
-const horizon = Math.max(...place.tasks.map((task) => task[2]));
-const end = Math.max(horizon, ...episodes.map((episode) => episode.makespan));
-const digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(end))));
-const number = (value) => value.toFixed(digits);
-const many = place.robots.length > MANY_ROBOTS;
-
-function element(tag, text = "", attributes = {}) {
-  const made = document.createElement(tag);
-  made.textContent = text;
-  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-  return made;
-}
 
 // The moment shown: a time and, for each side, the last decision made by then. Of several made at the same time, those
 // after it are yet to be made. `side` is the one looked at last, `looked` the task pointed at in its table.
@@ -45,9 +25,10 @@ class Side {
     this.decision = part("decision");
     this.decision.classList.toggle("certain", episode.decisions.every(({ candidates }) =>
       candidates.every((candidate) => candidate[5] === null)));
-    this.map = new MapView(part("map"));
-    const visits = episode.routes.flatMap((route, robot) => route.map((visit) => ({ robot, visit })));
-    this.gantt = new Gantt(part("gantt"), visits, (decision) => pick(index, decision));
+    const longest = Math.max(0, ...episode.decisions.map(({ candidates }) => candidates.length));
+    this.decision.style.setProperty("--rows", longest); // so that nothing below moves from one decision to the next
+    this.map = new MapView(part("map"), (task) => look(index, task));
+    this.gantt = new Gantt(part("gantt"), episode.routes, (decision) => pick(index, decision), (task) => look(index, task));
     this.strip(byId("time").appendChild(element("div", "", { class: "strip", id: `strip-${index}` })));
   }
 
@@ -55,7 +36,7 @@ class Side {
   strip(strip) {
     this.episode.decisions.forEach(({ time, robot }, index) => {
       strip.append(element("i", "", { style: `left: ${(100 * time) / end}%; background: ${robotColour(robot)}`,
-        title: `decision ${index}: robot ${robot} at ${number(time)}` }));
+        title: `decision ${index}: ${place.robot_names[robot]} at ${number(time)}` }));
     });
     strip.addEventListener("click", ({ clientX }) => { // ticks are thin: the nearest is meant
       const { left, width } = strip.getBoundingClientRect(), time = (end * (clientX - left)) / width;
@@ -71,6 +52,7 @@ class Side {
     this.map.draw(moment.time, taken, decision ? decision.robot : -1, looked);
     if (decision) this.gantt.mark(decision.robot, decision.time, this.visitOf.get(last)?.[4] ?? end);
     this.gantt.moveTo(moment.time);
+    this.gantt.look(looked);
     const completed = taken.flat().filter((visit) => visit[5] && visit[4] <= moment.time).length;
     this.now.textContent = `${completed} completed by now`;
     if (this.shown !== last) this.drawDecision(last, decision);
@@ -82,8 +64,9 @@ class Side {
       this.decision.replaceChildren(element("p", "No decision has been made yet.", { class: "faint" }));
       return;
     }
-    const what = decision.task === null ? "stays for good" : `takes task ${decision.task}`;
-    const advice = decision.advice === null ? "" : `; the policy would have taken task ${decision.advice}`;
+    const what = decision.task === null ? "stays for good" : `takes task ${place.task_names[decision.task]}`;
+    const advice = decision.advice === null ? "" :
+      `; the policy would have taken task ${place.task_names[decision.advice]}`;
     const table = element("table"), head = element("tr"), body = element("tbody");
     const columns = { task: "", probability: "words likely", distance: "wide", finish: "", due: "wide", slack: "",
       "": "words" };
@@ -91,7 +74,7 @@ class Side {
     body.append(...decision.candidates.map((candidate) => this.row(candidate, decision)));
     table.append(head, body);
     this.decision.replaceChildren(
-      element("b", `Decision ${last} (of ${this.times.length}): robot ${decision.robot} ${what} at ` +
+      element("b", `Decision ${last} (of ${this.times.length}): ${place.robot_names[decision.robot]} ${what} at ` +
         `${number(decision.time)}${advice}`),
       element("p", decision.reasons.map((count, reason) => `${count} ${REASONS[reason]}`).join(", ") +
         `; ${decision.candidates.length} of them listed`, { class: "faint" }),
@@ -108,10 +91,9 @@ class Side {
       likely.textContent = `${percent} %`;
       likely.style.setProperty("--share", `${100 * probability}%`);
     }
-    const cells = [[task, ""], null, [number(distance), "wide"], [number(finish), ""], [number(due), "wide"],
+    const cells = [[place.task_names[task], ""], null, [number(distance), "wide"], [number(finish), ""], [number(due), "wide"],
       [number(due - finish), ""], [notes, "words note"]];
     row.append(...cells.map((cell) => cell === null ? likely : element("td", cell[0], { class: cell[1] })));
-    row.title = notes; // in case it is cut off
     row.addEventListener("mouseenter", () => look(this.index, task));
     row.addEventListener("mouseleave", () => look(this.index, null));
     return row;
@@ -142,8 +124,9 @@ function step(by) {
   const next = moment.last[moment.side] + by;
   if (next >= 0 && next < sides[moment.side].times.length) pick(moment.side, next);
 }
-/** Point at a task on the map; null points at none. */
+/** Point at a task, on map and chart; null points at none. */
 function look(index, task) {
+  if (moment.side === index && moment.looked === task) return;
   moment.side = index;
   moment.looked = task;
   sides[index].draw();
@@ -183,7 +166,6 @@ byId("slider").addEventListener("input", ({ target }) => go(Number(target.value)
 byId("play").addEventListener("click", play);
 byId("previous").addEventListener("click", () => step(-1));
 byId("next").addEventListener("click", () => step(1));
-window.addEventListener("resize", draw);
 document.addEventListener("keydown", (event) => {
   if (event.target.matches("input, select, button")) return; // they have uses of their own for these keys
   const action = { " ": play, ArrowLeft: () => step(-1), ArrowRight: () => step(1) }[event.key];

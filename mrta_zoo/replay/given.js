@@ -1,0 +1,21 @@
+"use strict";
+// What the page was given: the scenario (`place`) and one or two episodes of it. All times come from there; what is worked
+// out here is only what holds at the moment shown. Maps are in map.js, charts in charts.js, what moves them in replay.js.
+const { place, episodes, cost, colours } = JSON.parse(document.getElementById("data").textContent);
+const SIDE_COLOURS = ["#1864ab", "#c2255c"];
+const MANY_ROBOTS = 20; // with more there is less text, and trails are cut
+
+const byId = (id) => document.getElementById(id);
+const counted = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
+const robotColour = (robot) => colours.robots[robot % colours.robots.length];
+const { horizon, end } = place;
+const digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(end))));
+const number = (value) => value.toFixed(digits);
+const many = place.robots.length > MANY_ROBOTS;
+
+function element(tag, text = "", attributes = {}) {
+  const made = document.createElement(tag);
+  made.textContent = text;
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  return made;
+}
