@@ -10,7 +10,6 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "torch": ("torch", "safetensors"),
     "plot": ("matplotlib",),
     "render": ("pygame",),
-    "replay": ("plotly",),
     "solvers": ("scipy", "numba"),
     "pyvrp": ("pyvrp",),
     "report": ("filelock", "scipy", "statsmodels", "pandas", "jinja2", "matplotlib"),

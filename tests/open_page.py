@@ -12,16 +12,16 @@ UNITS = 520
 class OpenPage:
     """A page, and what it complained of or asked the network for."""
 
-    def __init__(self, browser: Any, url: str) -> None:
+    def __init__(self, browser: Any, url: str, width: int = 1400, height: int = 900) -> None:
         self.complaints: list[str] = []
         self.requests: list[str] = []
-        self.tab = browser.new_page(viewport={"width": 1400, "height": 900})
+        self.tab = browser.new_page(viewport={"width": width, "height": height})
         self.tab.set_default_timeout(120_000)  # milliseconds; pages are large, and machines may be busy
         self.tab.on("console", lambda message: self.complaints.append(message.text))
         self.tab.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.tab.on("request", lambda request: self.requests.append(request.url))
         self.tab.goto(url)
-        self.tab.wait_for_selector("#progress .main-svg")
+        self.tab.wait_for_selector("#progress svg")
 
     def texts(self, selector: str) -> list[str]:
         """What the elements say, in order."""

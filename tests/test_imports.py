@@ -85,7 +85,7 @@ PACKAGES = {
     "eval": "mrta_zoo.eval",
 }
 VERIFY_MAY_IMPORT = {"mrta_zoo.scenario", "mrta_zoo.plan", "mrta_zoo.errors", "mrta_zoo.html", "mrta_zoo.counted"}
-HEAVY = ("torch", "matplotlib", "scipy", "tyro", "rich", "pygame", "plotly")
+HEAVY = ("torch", "matplotlib", "scipy", "tyro", "rich", "pygame")
 
 
 def modules() -> dict[str, Path]:

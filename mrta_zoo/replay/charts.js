@@ -108,7 +108,7 @@ class Gantt extends Chart {
       const name = many ? `${robot}` : fitted(place.robot_names[robot], this.left() - 8, TEXT);
       this.svg.append(svg("text", { class: "who", x: this.left() - 6, y: ABOVE + this.rows[robot].bar + BAR / 2 + 4,
         fill: robotColour(robot), "data-robot": robot }, name));
-      for (const visit of route) this.inner.append(this.visit(robot, visit));
+      for (const visit of route.toReversed()) this.inner.append(this.visit(robot, visit)); // bars on the ways from them
     });
     if (this.marked) this.mark(...this.marked);
     this.look(this.looked);
@@ -177,8 +177,8 @@ class Gantt extends Chart {
 
   /** Highlight a task with its deadline; null highlights none. */
   look(task) {
-    this.visits.get(this.looked)?.classList.remove("looked");
-    this.visits.get(task)?.classList.add("looked");
+    this.visits.get(this.looked)?.classList.remove("pointed");
+    this.visits.get(task)?.classList.add("pointed");
     this.looked = task;
   }
 }
@@ -210,7 +210,7 @@ class Progress extends Chart {
       const y = 14 + 15 * index;
       if (this.lines.length > 1) this.inner.append(
         svg("line", { x1: 8, x2: 26, y1: y - 4, y2: y - 4, stroke: SIDE_COLOURS[index], "stroke-width": 3 }),
-        svg("text", { class: "method", x: 31, y }, fitted(method, this.room / 2, TEXT)));
+        svg("text", { class: "series", x: 31, y }, fitted(method, this.room / 2, TEXT)));
     });
     this.inner.append(svg("text", { class: "unit", x: this.room - 6, y: this.height - 8 }, "tasks completed"));
   }

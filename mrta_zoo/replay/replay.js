@@ -161,6 +161,7 @@ byId("about").textContent = `${counted(place.tasks.length, "task")}, ` +
 document.querySelector("main").className = `${episodes.length > 1 ? "pair" : ""} ${many ? "many" : ""}`;
 const sides = episodes.map((episode, index) => new Side(index, episode));
 const progress = new Progress(byId("progress"), episodes, go);
+if (sides.some((side) => !side.gantt.lane)) byId("due").lastChild.textContent = " deadline: point at it to see of which task";
 byId("slider").max = end;
 byId("slider").addEventListener("input", ({ target }) => go(Number(target.value)));
 byId("play").addEventListener("click", play);

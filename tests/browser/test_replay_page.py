@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -21,12 +22,13 @@ from mrta_zoo.render.whereabouts import whereabouts
 from mrta_zoo.replay import write_replay
 from mrta_zoo.rules import Status
 from mrta_zoo.trace import Trace
+from mrta_zoo.view import shown_time
 
 pytestmark = pytest.mark.browser
 
 SCENARIO = small_scenario(5, tasks=25, robots=4, latest=200.0, name="<b>four</b> robots")
 TRACES = (record(SCENARIO, "capam-plus"), record(SCENARIO, "nearest", mask_rule="active"))
-END = max(float(SCENARIO.deadline.max()), *(float(np.nanmax(trace.mission().finish)) for trace in TRACES))
+END = shown_time(SCENARIO, max(float(np.nanmax(trace.mission().finish)) for trace in TRACES))
 
 
 @pytest.fixture(scope="module")
@@ -81,10 +83,10 @@ def test_everything_is_there(page):
         assert count(f"#side-{side} .robot").count() == 4
         assert count(f"#side-{side} .task").count() == 25
         visits = sum(map(len, trace.plan().routes))
-        assert count(f"#side-{side} .gantt .barlayer .point").count() == 2 * visits  # way and work
-        assert count(f"#side-{side} .gantt .scatterlayer .point").count() == visits  # deadlines
+        for mark in ("travel", "work", "due", "deadline"):
+            assert count(f"#side-{side} .gantt .visit .{mark}").count() == visits
         assert count(f"#strip-{side} i").count() == len(trace.choices)
-    assert page.tab.locator("#progress .scatterlayer .trace").count() == 2
+    assert page.tab.locator("#progress .progress").count() == 2
     score = TRACES[0].mission().completed()
     assert page.texts(".score")[0].startswith(f"{score} of 25 completed, cost {TRACES[0].mission().cost():.2f}")
 
@@ -132,10 +134,11 @@ def check_decision(page: OpenPage, side: int, index: int) -> None:
     ring = page.tab.locator(f"#side-{side} .acting").get_attribute("transform")
     acting = page.tab.locator(f"#side-{side} .robot[data-robot='{decision.robot}']").get_attribute("transform")
     assert ring == acting
-    gantt = page.tab.locator(f"#side-{side} .gantt").bounding_box()
     picked = page.tab.locator(f"#side-{side} .picked").bounding_box()
-    middle = picked["y"] + picked["height"] / 2 - gantt["y"]
-    assert int((middle - 6) // 25) == decision.robot  # rows of 25 pixels below a margin of 6
+    for robot in range(SCENARIO.num_robots):
+        name = page.tab.locator(f"#side-{side} .who[data-robot='{robot}']").bounding_box()
+        in_its_row = picked["y"] < name["y"] + name["height"] / 2 < picked["y"] + picked["height"]
+        assert in_its_row == (robot == decision.robot)
     cursor = page.tab.locator(f"#side-{side} .cursor").bounding_box()
     assert cursor["x"] == pytest.approx(picked["x"], abs=2)
 
@@ -149,8 +152,9 @@ def test_a_click_on_the_chart_goes_to_its_decision(page, side):
         if finish[each.choice.task] <= SCENARIO.deadline[each.choice.task]
     ]
     middle = len(on_time) // 2
-    bars = page.tab.locator(f"#side-{side} .gantt .barlayer .trace").nth(1).locator(".point")  # of work done in time
-    box = bars.nth(middle).bounding_box()
+    bar = page.tab.locator(f"#side-{side} .visit[data-task='{on_time[middle].choice.task}'] .work")
+    bar.scroll_into_view_if_needed()
+    box = bar.bounding_box()
     page.tab.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     check_decision(page, side, on_time[middle].index)
 
@@ -214,12 +218,77 @@ def test_pointing_at_a_row_rings_its_task(page):
     row.hover()
     task = int(row.get_attribute("data-task"))
     x, y = SCENARIO.task_xy[task] * UNITS / 50
-    ring = page.tab.locator("#side-0 .looked")
+    ring = page.tab.locator("#side-0 circle.looked")
     assert ring.get_attribute("visibility") == "visible"
     numbers = re.findall(r"[\d.]+", ring.get_attribute("transform"))
     assert [float(number) for number in numbers] == pytest.approx([x, UNITS - y], abs=0.01)
     page.tab.mouse.move(5, 5)
     assert ring.get_attribute("visibility") == "hidden"
+
+
+def end_of_way(page: OpenPage, side: int, task: int) -> tuple[float, float]:
+    """Where the line from a task's bar to its deadline ends, in pixels of the window."""
+    point = page.tab.locator(f"#side-{side} .visit[data-task='{task}'] .due").evaluate(
+        "way => { const end = way.getPointAtLength(way.getTotalLength()).matrixTransform(way.getScreenCTM());"
+        " return [end.x, end.y] }"
+    )
+    return point[0], point[1]
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_each_deadline_is_joined_to_its_task(page, side):
+    finish = TRACES[side].mission().finish
+    start, stop = (page.tab.evaluate(f"sides[{side}].gantt.at({time})") for time in (0, END))
+    left = page.tab.locator(f"#side-{side} .gantt .chart").bounding_box()["x"]
+    left += page.tab.evaluate(f"sides[{side}].gantt.left()")
+    for task in range(SCENARIO.num_tasks):
+        if np.isnan(finish[task]):
+            continue
+        due, y = end_of_way(page, side, task)
+        shown = min(SCENARIO.deadline[task], END) / END
+        assert due - left == pytest.approx(start + (stop - start) * shown, abs=0.1)
+        group = f"#side-{side} .visit[data-task='{task}']"
+        bar, tick = (page.tab.locator(f"{group} .{part}").bounding_box() for part in ("work", "deadline"))
+        in_time = finish[task] <= SCENARIO.deadline[task]
+        assert in_time == (y > bar["y"] + bar["height"] - 1)  # below the bar, or above it
+        assert tick["x"] <= due + 1.5
+        assert tick["x"] + tick["width"] >= due - 1.5
+
+
+def test_pointing_at_a_deadline_shows_its_task_and_the_other_way_round(page):
+    page.slide(END)
+    route = TRACES[0].plan().routes[1]
+    for task in (route[0], route[-1]):
+        group = page.tab.locator(f"#side-0 .visit[data-task='{task}']")
+        for part in (".deadline", ".work"):
+            page.tab.mouse.move(5, 5)
+            assert page.tab.locator(".visit.pointed").count() == 0
+            group.locator(part).hover(force=True)
+            assert page.tab.locator(".visit.pointed").get_attribute("data-task") == str(task)
+            assert page.tab.locator("#side-0 circle.looked").get_attribute("visibility") == "visible"
+            wide = [part.evaluate("part => getComputedStyle(part).strokeWidth") for part in (
+                group.locator(".due"), group.locator(".work"), group.locator(".deadline"))]  # fmt: skip
+            assert wide == ["2px", "2px", "3px"]
+    page.tab.mouse.move(5, 5)
+    page.tab.locator(f"#side-0 .task[data-task='{route[0]}']").hover(force=True)
+    assert page.tab.locator(".visit.pointed").get_attribute("data-task") == str(route[0])
+    said = page.tab.locator("footer").inner_text()
+    assert "from a bar to the deadline of its task" in said
+    assert "above it" not in said
+
+
+def test_a_drag_over_a_chart_shows_that_span(page):
+    chart = page.tab.locator("#side-0 .gantt .chart")
+    chart.scroll_into_view_if_needed()
+    box = chart.bounding_box()
+    page.tab.mouse.move(box["x"] + 0.4 * box["width"], box["y"] + 10)
+    page.tab.mouse.down()
+    page.tab.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 10)
+    page.tab.mouse.up()
+    first, last = page.tab.evaluate("sides[0].gantt.span")
+    assert 0.2 * END < first < 0.45 * END < 0.5 * END < last < 0.65 * END
+    chart.dblclick(position={"x": 200, "y": 3})
+    assert page.tab.evaluate("sides[0].gantt.span") == [0, pytest.approx(END)]
 
 
 def test_play_moves_the_time_on_and_pauses(page):
@@ -286,3 +355,67 @@ def test_the_scenario_is_not_square(browser, tmp_path):
     x, y = map(float, re.findall(r"[\d.]+", mark)[:2])
     assert (x, y) == pytest.approx((520, (50 - 10) * 2.6))  # 520 units for 200
     page.tab.close()
+
+
+FAR = (512000.0, 5403000.0)
+NAMED = replace(
+    SCENARIO, task_names=[f"{'survey point ' * (j % 3 == 0)}V-{j}" for j in range(25)],
+    robot_names=["Spot", "</script>", "a robot with a long name that ends in 2", "$R_3$"],
+    task_xy=SCENARIO.task_xy + FAR, robot_xy=SCENARIO.robot_xy + FAR, map_origin=FAR,
+    deadline=[1e9, *SCENARIO.deadline[1:]],
+)  # fmt: skip
+OVERLAPPING = """() => {
+  const texts = [...document.querySelectorAll("text, h1, h2, p, td, th, b, button, output, .score, .now, footer span")]
+    .filter((text) => text.textContent.trim() && !text.closest(".robot") && text.getClientRects().length > 0);
+  const boxes = texts.map((text) => {
+    const range = document.createRange();
+    range.selectNodeContents(text);
+    return [text.textContent.trim(), range.getBoundingClientRect()];
+  });
+  const found = boxes.filter(([, box]) => box.left < -0.5 || box.right > document.documentElement.clientWidth + 0.5)
+    .map(([text]) => `${text} is cut`);
+  boxes.forEach(([text, a], index) => boxes.slice(0, index).forEach(([other, b]) => {
+    const wide = Math.min(a.right, b.right) - Math.max(a.left, b.left);
+    const high = Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top);
+    if (wide > 1 && high > 4) found.push(`${text} on ${other}`);
+  }));
+  return found;
+}"""
+
+
+@pytest.mark.parametrize("width", [360, 500, 1280, 1920])
+@pytest.mark.parametrize("count", [1, 2])
+def test_no_text_is_cut_or_on_another(browser, tmp_path, width, count):
+    traces = [record(NAMED, "nearest"), record(NAMED, "nearest", mask_rule="active")]
+    write_replay(traces[:count], tmp_path / "named.html")
+    page = OpenPage(browser, (tmp_path / "named.html").as_uri() + "#5", width=width, height=720)
+    assert page.tab.evaluate("document.documentElement.scrollWidth") <= width
+    assert page.tab.evaluate(OVERLAPPING) == []
+    assert page.decision(0).startswith("Decision 5 (of ")
+    named = page.tab.locator("#side-0 .labels text").all_text_contents()
+    assert len(named) > 12
+    assert "V-1" in named
+    assert page.tab.evaluate("end") < 1000
+    page.tab.set_viewport_size({"width": 700, "height": 800})
+    page.tab.wait_for_function("sides[0].map.width === sides[0].map.box.clientWidth")
+    assert page.tab.evaluate(OVERLAPPING) == []
+    page.tab.close()
+    assert page.complaints == []
+
+
+def test_a_map_that_does_not_begin_at_0(browser, tmp_path):
+    write_replay([record(NAMED, "nearest")], tmp_path / "far.html")
+    page = OpenPage(browser, (tmp_path / "far.html").as_uri())
+    mark = page.tab.locator("#side-0 .task").nth(4).get_attribute("transform")
+    x, y = map(float, re.findall(r"[\d.]+", mark)[:2])
+    assert (x, UNITS - y) == pytest.approx(tuple(SCENARIO.task_xy[4] * UNITS / 50), abs=0.01)
+    assert {"512000", "512050"} <= set(page.tab.locator(".axis.below").all_text_contents())
+    assert {"5403000", "5403050"} <= set(page.tab.locator(".axis:not(.below)").all_text_contents())
+    page.tab.close()
+
+
+def test_numbers_in_the_chart_and_on_the_map_are_whole(page):
+    for selector in (".visit .what", ".labels text"):
+        texts = page.tab.locator(f"#side-0 {selector}").all_text_contents()
+        assert len(texts) > 15
+        assert {int(text) for text in texts} <= set(range(25))

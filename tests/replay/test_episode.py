@@ -26,8 +26,9 @@ TRACE = Trace(SCENARIO, (Choice(0, {0: 0.75, 1: 0.2}), Choice(2, advice=1), Choi
 def test_visits() -> None:
     episode = episode_of(TRACE)
     assert episode.routes == [
-        [Visit(0, 0, 0.0, 10.0, 13.0, True), Visit(1, 2, 13.0, 33.0, 35.0, True)],
-        [Visit(2, 1, 0.0, 100.0 - 100.0, 20.0, True)],
+        # The line to task 1's deadline begins at 35, where that to task 0's, until 40, lies below it.
+        [Visit(0, 0, 0.0, 10.0, 13.0, True, 0), Visit(1, 2, 13.0, 33.0, 35.0, True, 1)],
+        [Visit(2, 1, 0.0, 100.0 - 100.0, 20.0, True, 0)],
     ]
     assert (episode.completed, episode.makespan, episode.method) == (3, 35.0, "mine")
     assert episode.cost == pytest.approx(50 / 50)  # task 3, which nobody took, counts as finished at its deadline
