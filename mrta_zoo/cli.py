@@ -56,7 +56,6 @@ def _compare(argv: list[str]) -> None:
 
 
 def _replay(argv: list[str]) -> None:
-    require("replay", "the page")
     from mrta_zoo.eval.replay import replay_command
 
     replay_command(argv)
