@@ -112,7 +112,8 @@ class RouteMap:
         ]  # fmt: skip
 
     def _xy(self, which: Any) -> FloatArray:
-        return self.scenario.task_xy[which]
+        places: FloatArray = self.scenario.task_xy[which]
+        return places
 
     def _points(self, places: FloatArray) -> FloatArray:
         return self.scale * (places - self.low)

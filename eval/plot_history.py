@@ -16,7 +16,7 @@ import tyro
 
 from mrta_zoo.errors import ConfigError, MrtaError
 from mrta_zoo.eval.destination import check_destination, check_distinct
-from mrta_zoo.eval.figure import Figure, LiteralFigure, check_format, save_picture
+from mrta_zoo.eval.figure import LiteralFigure, check_format, save_picture
 from mrta_zoo.io.source import check_name, read_text
 from mrta_zoo.render.style import plain
 
@@ -62,7 +62,7 @@ def read_history(path: Path) -> LearningCurve:
         raise ConfigError(f"{file}: not a run's history.csv ({error})") from None
 
 
-def draw_history(curves: list[LearningCurve], by: Literal["episodes", "updates"] = "episodes") -> Figure:
+def draw_history(curves: list[LearningCurve], by: Literal["episodes", "updates"] = "episodes") -> LiteralFigure:
     """Completion in percent against episodes or updates, one line a run; dots where plans are still imitated."""
     figure = LiteralFigure(figsize=(8, 4.2), layout="constrained")
     axes = figure.add_subplot()

@@ -9,7 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from mrta_zoo.eval.figure import Figure, LiteralFigure, save_picture
+from mrta_zoo.eval.figure import LiteralFigure, save_picture
 from mrta_zoo.eval.lettering import fitted
 from mrta_zoo.eval.plan_map import RouteMap
 from mrta_zoo.eval.plan_schedule import Schedule
@@ -30,7 +30,7 @@ NARROW = 380.0
 """Legends narrower than this have two lines."""
 
 
-def draw_plan(scenario: Scenario, plan: Plan, score: Score | None = None) -> Figure:
+def draw_plan(scenario: Scenario, plan: Plan, score: Score | None = None) -> LiteralFigure:
     """The picture as a matplotlib figure.
 
     Args:

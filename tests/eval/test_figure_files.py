@@ -7,11 +7,12 @@ from typing import Any
 
 import pytest
 from command_line import Captured, fails
+from matplotlib.figure import Figure
 
 from mrta_zoo.cli import main
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval import commands
-from mrta_zoo.eval.figure import Figure, LiteralFigure, check_format, save_picture
+from mrta_zoo.eval.figure import LiteralFigure, check_format, save_picture
 from mrta_zoo.eval.plot_history import main as plot_history
 
 
