@@ -108,7 +108,7 @@ class Gantt extends Chart {
       const name = many ? `${robot}` : fitted(place.robot_names[robot], this.left() - 8, TEXT);
       this.svg.append(svg("text", { class: "who", x: this.left() - 6, y: ABOVE + this.rows[robot].bar + BAR / 2 + 4,
         fill: robotColour(robot), "data-robot": robot }, name));
-      for (const visit of route.toReversed()) this.inner.append(this.visit(robot, visit)); // bars on the ways from them
+      for (const visit of [...route].reverse()) this.inner.append(this.visit(robot, visit)); // bars on the ways from them
     });
     if (this.marked) this.mark(...this.marked);
     this.look(this.looked);
