@@ -13,6 +13,7 @@ from mrta_zoo.eval.figure import LiteralFigure, save_picture
 from mrta_zoo.eval.lettering import fitted
 from mrta_zoo.eval.plan_map import RouteMap
 from mrta_zoo.eval.plan_schedule import Schedule
+from mrta_zoo.html import set_apart
 from mrta_zoo.palette import INK
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
@@ -79,7 +80,7 @@ def save_plan_picture(scenario: Scenario, plan: Plan, path: Path, score: Score |
 def _title(scenario: Scenario, plan: Plan, score: Score) -> str:
     late = sum(not visit.completed for visits in score.schedule for visit in visits)
     visited = sum(len(visits) for visits in score.schedule)
-    name, method = (fitted(each, WIDTH / 4, TITLE, "bold") for each in (scenario.name, plan.method))
+    name, method = (set_apart(fitted(each, WIDTH / 4, TITLE, "bold")) for each in (scenario.name, plan.method))
     return (
         f"{name}{f', planned by {method}' if method else ''}: {score.completed} of {score.tasks} tasks completed "
         f"({100 * score.completion:.1f} %), {late} late, {score.tasks - visited} not taken"

@@ -40,8 +40,12 @@ def table(title: str, header: Sequence[str], rows: Iterable[Sequence[object]]) -
 
 def in_order(names: Iterable[object]) -> str:
     """Names as plain text from left to right, also where some are written from right to left."""
-    texts = map(str, names)
-    return " → ".join(f"\u2068{text}\u2069" if any(map(_from_right, text)) else text for text in texts)
+    return " → ".join(set_apart(str(name)) for name in names)
+
+
+def set_apart(name: str) -> str:
+    """A name as plain text; one written from right to left so that what follows it stays behind it."""
+    return f"\u2068{name}\u2069" if any(map(_from_right, name)) else name
 
 
 def map_of(

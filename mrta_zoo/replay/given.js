@@ -5,6 +5,10 @@ const { place, episodes, cost, colours } = JSON.parse(document.getElementById("d
 const SIDE_COLOURS = ["#1864ab", "#c2255c"];
 const MANY_ROBOTS = 20; // with more there is less text, and trails are cut
 
+// A name that is written from right to left is set apart, so that what follows it stays behind it.
+const apart = (name) => /[\u0590-\u08ff\ufb1d-\ufefc]/.test(name) ? `\u2068${name}\u2069` : name;
+for (const names of ["task_names", "robot_names"]) place[names] = place[names].map(apart);
+
 const byId = (id) => document.getElementById(id);
 const counted = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
 const robotColour = (robot) => colours.robots[robot % colours.robots.length];

@@ -419,3 +419,12 @@ def test_numbers_in_the_chart_and_on_the_map_are_whole(page):
         texts = page.tab.locator(f"#side-0 {selector}").all_text_contents()
         assert len(texts) > 15
         assert {int(text) for text in texts} <= set(range(25))
+
+
+def test_names_from_right_to_left_leave_sentences_in_order(browser, tmp_path):
+    named = replace(SCENARIO, task_names=[f"שער {task}" for task in range(25)], robot_names=["ברז", "b", "c", "d"])
+    write_replay([record(named, "nearest")], tmp_path / "right.html")
+    page = OpenPage(browser, (tmp_path / "right.html").as_uri() + "#0")
+    task = record(named, "nearest").choices[0].task
+    assert f"\u2068ברז\u2069 takes task \u2068שער {task}\u2069 at 0.0" in page.decision(0)
+    page.tab.close()

@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from mrta_zoo.errors import ConfigError, MissingExtraError, PlanError
+from mrta_zoo.eval.lettering import text_width
 from mrta_zoo.eval.plot_plan import draw_plan, save_plan_picture
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.palette import GROUND, robot_colour
@@ -49,6 +50,19 @@ def test_the_picture_says_what_the_plan_does() -> None:
     places = [collection.get_offsets().tolist() for collection in routes.collections]
     for mark in ([[10, 0]], [[30, 0]], [[50, 50]]):  # completed, late, not taken
         assert mark in places
+
+
+def test_a_name_from_right_to_left_leaves_the_title_in_order() -> None:
+    title = draw_plan(replace(SCENARIO, name="שער 5"), PLAN).get_suptitle()
+    assert title.startswith("\u2068שער 5\u2069, planned by by hand: 1 of 3")
+
+
+def test_a_long_name_leaves_room_for_what_else_the_title_says() -> None:
+    title = draw_plan(replace(SCENARIO, name="N" * 300), PLAN).get_suptitle()
+    assert title.startswith("NNNN")
+    assert "…" in title
+    assert title.endswith("not taken")
+    assert text_width(title, 13.0, "bold") < 17 * 72
 
 
 def test_late_tasks_are_marked_without_colour() -> None:

@@ -101,9 +101,9 @@ def drawn_at(scenario: Scenario, robot: int, route: list[Visit], time: float, ma
 
 def test_names() -> None:
     named = named_scenario()
-    place = place_of(named)
+    place = place_of(named, 0.0)
     assert (place.task_names, place.robot_names) == (list(named.task_names), list(named.robot_names))
-    assert place_of(SCENARIO).task_names == ["0", "1", "2", "3"]
-    assert place_of(SCENARIO).robot_names == ["robot 0", "robot 1"]
+    assert place_of(SCENARIO, 0.0).task_names == ["0", "1", "2", "3"]
+    assert place_of(SCENARIO, 0.0).robot_names == ["robot 0", "robot 1"]
     second = episode_of(Trace(named, (Choice(0), Choice(2)))).decisions[1]
     assert [each.note for each in second.candidates if each.task == 0] == ["Ann on it until 15.0"]
