@@ -6,6 +6,7 @@ Needs matplotlib (``mrta_zoo[plot]``), which it uses without its global state.
 from __future__ import annotations
 
 import warnings
+from bisect import bisect_left
 from collections.abc import Sequence
 from functools import lru_cache
 
@@ -43,11 +44,16 @@ def fitted(text: str, room: float, size: float, weight: str = "normal") -> str:
     """
     if text_width(text, size, weight) <= room:
         return text
-    for kept in range(len(text) - 1, SHORTEST - 2, -1) if not text.isdecimal() else ():
-        shorter = f"{text[: (kept + 1) // 2]}…{text[len(text) - kept // 2 :]}"
-        if text_width(shorter, size, weight) <= room:
-            return shorter
-    return ""
+    if text.isdecimal() or len(text) <= SHORTEST:
+        return ""
+
+    def shortened(kept: int) -> str:
+        return f"{text[: (kept + 1) // 2]}…{text[len(text) - kept // 2 :]}"
+
+    too_many = bisect_left(
+        range(len(text)), True, SHORTEST - 1, key=lambda kept: text_width(shortened(kept), size, weight) > room
+    )
+    return shortened(too_many - 1) if too_many >= SHORTEST else ""
 
 
 def places_of_labels(

@@ -40,7 +40,10 @@ def lanes(starts: Sequence[float], ends: Sequence[float]) -> list[int]:
         For each line its lane, counted from the bottom.
     """
     found: list[int] = []
-    for index, start in enumerate(starts):
-        beside = [lane for lane, end in zip(found, ends[:index], strict=True) if end >= start]
-        found.append(max(beside, default=-1) + 1)
+    below: list[float] = []  # where the lines end over which the next one lies
+    for start, end in zip(starts, ends, strict=True):
+        while below and below[-1] < start:
+            below.pop()
+        found.append(len(below))
+        below.append(end)
     return found

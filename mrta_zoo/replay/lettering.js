@@ -26,12 +26,17 @@ function textWidth(text, size) {
 function fitted(text, room, size) {
   if (textWidth(text, size) <= room) return text;
   const letters = [...text];
-  for (let kept = letters.length - 1; kept > SHORTEST - 2 && !/^\d+$/.test(text); kept -= 1) {
+  if (/^\d+$/.test(text) || letters.length <= SHORTEST) return "";
+  const shortened = (kept) => {
     const end = Math.floor(kept / 2);
-    const shorter = `${letters.slice(0, kept - end).join("")}…${letters.slice(letters.length - end).join("")}`;
-    if (textWidth(shorter, size) <= room) return shorter;
+    return `${letters.slice(0, kept - end).join("")}…${letters.slice(letters.length - end).join("")}`;
+  };
+  let fits = SHORTEST - 2, tooMany = letters.length; // halved until they meet
+  while (tooMany - fits > 1) {
+    const kept = Math.floor((fits + tooMany) / 2);
+    if (textWidth(shortened(kept), size) <= room) fits = kept; else tooMany = kept;
   }
-  return "";
+  return fits >= SHORTEST - 1 ? shortened(fits) : "";
 }
 
 /** Where texts lie beside marks so that none covers another, a mark or the frame: left end and base line, or null. */
