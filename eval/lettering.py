@@ -56,6 +56,11 @@ def fitted(text: str, room: float, size: float, weight: str = "normal") -> str:
     return shortened(too_many - 1) if too_many >= SHORTEST else ""
 
 
+def round_number(value: float) -> str:
+    """A number beside an axis: every digit of it, as far as it is no error of rounding."""
+    return f"{value:.15g}"
+
+
 def places_of_labels(
     places: FloatArray, texts: Sequence[str], size: float, clear: FloatArray, frame: tuple[float, float]
 ) -> dict[int, tuple[float, float]]:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from mrta_zoo.eval.lettering import fitted, places_of_labels, text_width
+from mrta_zoo.eval.lettering import fitted, places_of_labels, round_number, text_width
 from mrta_zoo.extras import require
 from mrta_zoo.palette import FAINT, INK, robot_colour
 from mrta_zoo.plan import Plan
@@ -70,18 +70,16 @@ class RouteMap:
 
     def left(self) -> float:
         """Room for the numbers beside the axis."""
-        ends = (self.low[1], self.low[1] + self.size[1] / self.scale)
-        return max(text_width(f"{each:.0f}", TICK) for each in ends) + 12
+        return max(text_width(round_number(each), TICK) for each in self._ticks(1)) + 12
 
     def draw(self, axes: Any) -> None:
         """Draw it on axes of its size."""
         high = self.low + np.array(self.size) / self.scale
         axes.set(xlim=(self.low[0], high[0]), ylim=(self.low[1], high[1]))
         plain(axes)
-        numbers = max(text_width(f"{each:.0f}", TICK) for each in (self.low[0], high[0]))
-        for axis, room in ((axes.xaxis, self.size[0] / (2 * numbers)), (axes.yaxis, self.size[1] / 40)):
-            axis.set_major_locator(MaxNLocator(min(max(int(room), 1), 6)))
-            axis.set_major_formatter(lambda value, _: f"{value:.10g}")
+        for side, axis in enumerate((axes.xaxis, axes.yaxis)):
+            ticks = self._ticks(side)
+            axis.set_ticks(ticks, [round_number(each) for each in ticks])
         numbered = self.scenario.num_tasks <= MOST_NUMBERED
         size = 34.0 if numbered else max(4.0, 5000.0 / self.scenario.num_tasks)
         taken = np.zeros(self.scenario.num_tasks, dtype=np.bool_)
@@ -99,6 +97,17 @@ class RouteMap:
         if numbered:
             self._draw_labels(axes, taken)
         axes.set_title("Routes (distance units)", fontsize=10, color=FAINT, loc="left")
+
+    def _ticks(self, side: int) -> list[float]:
+        """Round numbers along x (0) or y (1), as many as have room."""
+        low, length = float(self.low[side]), self.size[side]
+        high = low + length / self.scale
+        for most in range(6, 1, -1):
+            found = [each for each in MaxNLocator(most).tick_values(low, high).tolist() if low <= each <= high]
+            needed = max(text_width(round_number(each), TICK) for each in found) * 1.3 if side == 0 else 24.0
+            if needed * len(found) <= length:
+                break
+        return found
 
     def legend(self) -> list[Any]:
         """What the marks mean, as handles with labels."""

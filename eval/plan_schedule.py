@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mrta_zoo.eval.lettering import fitted, text_width
+from mrta_zoo.eval.lettering import fitted, round_number, text_width
 from mrta_zoo.extras import require
 from mrta_zoo.lanes import deadline_lanes
 from mrta_zoo.palette import FAINT, GROUND, INK, robot_colour
@@ -112,7 +112,7 @@ class Schedule:
                 self._draw_row(axes, robot, base, scale)
             top += self._row(robot)
         self._draw_names(axes, middles)
-        axes.xaxis.set_major_formatter(lambda value, _: f"{value:.10g}")
+        axes.xaxis.set_major_formatter(lambda value, _: round_number(value))
         axes.xaxis.set_tick_params(labeltop=self.height > HIGH)
         axes.set_xlabel("time units", color=FAINT, fontsize=9)
         axes.set_title("Who does what when", fontsize=10, color=FAINT, loc="left")
@@ -170,6 +170,8 @@ class Schedule:
         wide = scale * (finish - arrival) > 2.5  # an edge of the ground's colour keeps bars apart that touch
         looks = ((~late & wide, colour, GROUND), (~late & ~wide, colour, colour), (late, "white", LATE))
         for which, face, edge in looks:
+            if not which.any():
+                continue
             axes.bar(
                 arrival[which], self.bar, (finish - arrival)[which], base, align="edge", color=face, edgecolor=edge,
                 linewidth=1.0, hatch="////" if face == "white" else None, zorder=3,
@@ -214,13 +216,13 @@ class Schedule:
             )
         axes.vlines(places, heights - half, heights + half, color=colour, linewidth=1.8, zorder=3)
         beyond = np.array([visit.deadline > self.end for visit in visits])
-        axes.scatter(places[beyond], heights[beyond], marker=">", s=9, color=colour, zorder=3, clip_on=False)
+        if beyond.any():
+            axes.scatter(places[beyond], heights[beyond], marker=">", s=9, color=colour, zorder=3, clip_on=False)
         late = np.array([not visit.completed for visit in visits])
-        crosses = heights[late] if self.lane else np.full(late.sum(), base)
-        axes.scatter(
-            [visit.finish for visit in visits if not visit.completed], crosses, marker="x", s=22, c=LATE,
-            linewidths=1.6, zorder=5,
-        )  # fmt: skip
+        if late.any():
+            finish = np.array([visit.finish for visit in visits])[late]
+            crosses = heights[late] if self.lane else np.full(len(finish), base)
+            axes.scatter(finish, crosses, marker="x", s=22, c=LATE, linewidths=1.6, zorder=5)
 
 
 def _load(visits: Sequence[Visit]) -> str:

@@ -143,7 +143,7 @@ def _round_numbers(low: float, size: float, step: float) -> list[float]:
 
 
 def _written(value: float) -> str:
-    return f"{value:.10g}"
+    return f"{value:.15g}"
 
 
 def _round_step(about: float) -> float:

@@ -63,5 +63,5 @@ function roundNumbers(low, high, about) {
   const power = 10 ** Math.floor(Math.log10((high - low) / about));
   const step = power * ([1, 2, 5].find((each) => (high - low) / (each * power) <= about) ?? 10);
   const first = Math.ceil(low / step - 1e-6), last = Math.floor(high / step + 1e-6);
-  return Array.from({ length: last - first + 1 }, (_, index) => Number(((first + index) * step).toPrecision(12)));
+  return Array.from({ length: last - first + 1 }, (_, index) => Number(((first + index) * step).toPrecision(15)));
 }

@@ -91,9 +91,10 @@ class Side {
       likely.textContent = `${percent} %`;
       likely.style.setProperty("--share", `${100 * probability}%`);
     }
-    const cells = [[place.task_names[task], ""], null, [number(distance), "wide"], [number(finish), ""], [number(due), "wide"],
-      [number(due - finish), ""], [notes, "words note"]];
+    const name = place.task_names[task], cells = [[fitted(name, 170, 13), ""], null, [number(distance), "wide"],
+      [number(finish), ""], [number(due), "wide"], [number(due - finish), ""], [notes, "words note"]];
     row.append(...cells.map((cell) => cell === null ? likely : element("td", cell[0], { class: cell[1] })));
+    row.firstChild.title = name; // in case it is shortened
     row.addEventListener("mouseenter", () => look(this.index, task));
     row.addEventListener("mouseleave", () => look(this.index, null));
     return row;

@@ -359,7 +359,7 @@ def test_the_scenario_is_not_square(browser, tmp_path):
 
 FAR = (512000.0, 5403000.0)
 NAMED = replace(
-    SCENARIO, task_names=[f"{'survey point ' * (j % 3 == 0)}V-{j}" for j in range(25)],
+    SCENARIO, task_names=[f"{'survey point ' * (j % 3 == 0)}{'x' * 150 * (j % 8 == 0)}V-{j}" for j in range(25)],
     robot_names=["Spot", "</script>", "a robot with a long name that ends in 2", "$R_3$"],
     task_xy=SCENARIO.task_xy + FAR, robot_xy=SCENARIO.robot_xy + FAR, map_origin=FAR,
     deadline=[1e9, *SCENARIO.deadline[1:]],
