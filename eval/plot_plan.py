@@ -9,6 +9,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.figure import LiteralFigure, save_picture
 from mrta_zoo.eval.lettering import fitted
 from mrta_zoo.eval.plan_map import RouteMap
@@ -81,8 +82,9 @@ def _title(scenario: Scenario, plan: Plan, score: Score) -> str:
     late = sum(not visit.completed for visits in score.schedule for visit in visits)
     visited = sum(len(visits) for visits in score.schedule)
     name, method = (set_apart(fitted(each, WIDTH / 4, TITLE, "bold")) for each in (scenario.name, plan.method))
+    by = f", planned by {method}" if method else ""
     return (
-        f"{name}{f', planned by {method}' if method else ''}: {score.completed} of {score.tasks} tasks completed "
+        f"{name}{by}: {score.completed} of {counted(score.tasks, 'task')} completed "
         f"({100 * score.completion:.1f} %), {late} late, {score.tasks - visited} not taken"
     )
 

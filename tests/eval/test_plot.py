@@ -57,6 +57,11 @@ def test_a_name_from_right_to_left_leaves_the_title_in_order() -> None:
     assert title.startswith("\u2068שער 5\u2069, planned by by hand: 1 of 3")
 
 
+def test_of_one_task_the_title_says_so() -> None:
+    one = Scenario(task_xy=[[5, 5]], deadline=[90], workload=[1], robot_xy=[[0, 5]], capacity=[1])
+    assert ": 1 of 1 task completed (100.0 %)" in draw_plan(one, Plan.of([(0,)])).get_suptitle()
+
+
 def test_a_long_name_leaves_room_for_what_else_the_title_says() -> None:
     title = draw_plan(replace(SCENARIO, name="N" * 300), PLAN).get_suptitle()
     assert title.startswith("NNNN")
