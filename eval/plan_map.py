@@ -103,7 +103,7 @@ class RouteMap:
         low, length = float(self.low[side]), self.size[side]
         high = low + length / self.scale
         for most in range(6, 1, -1):
-            found = [each for each in MaxNLocator(most).tick_values(low, high).tolist() if low <= each <= high]
+            found = [float(each) for each in MaxNLocator(most).tick_values(low, high) if low <= each <= high]
             needed = max(text_width(round_number(each), TICK) for each in found) * 1.3 if side == 0 else 24.0
             if needed * len(found) <= length:
                 break
