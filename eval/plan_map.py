@@ -70,7 +70,7 @@ class RouteMap:
 
     def left(self) -> float:
         """Room for the numbers beside the axis."""
-        return max(text_width(round_number(each), TICK) for each in self._ticks(1)) + 12
+        return max((text_width(round_number(each), TICK) for each in self._ticks(1)), default=0.0) + 12
 
     def draw(self, axes: Any) -> None:
         """Draw it on axes of its size."""
@@ -104,7 +104,9 @@ class RouteMap:
         high = low + length / self.scale
         for most in range(6, 1, -1):
             found = [float(each) for each in MaxNLocator(most).tick_values(low, high) if low <= each <= high]
-            needed = max(text_width(round_number(each), TICK) for each in found) * 1.3 if side == 0 else 24.0
+            needed = (
+                1.3 * max((text_width(round_number(each), TICK) for each in found), default=0.0) if side == 0 else 24.0
+            )
             if needed * len(found) <= length:
                 break
         return found
