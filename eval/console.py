@@ -22,7 +22,7 @@ from rich.progress import (
 )
 from rich.text import Text
 
-from mrta_zoo.fold import fold
+from mrta_zoo.fold import fold, spelt_out
 
 PIPED_WIDTH = 1000
 """Columns when piped: wide enough for any table here, so that lines are not folded."""
@@ -43,11 +43,6 @@ class LiteralConsole(Console):
     def render_str(self, text: str, **options: Any) -> Text:
         """The text, for every string that is printed or stands in a table."""
         return super().render_str(spelt_out(text), **options)
-
-
-def spelt_out(text: str) -> str:
-    """The text with what would steer a terminal in the form that it has in Python."""
-    return "".join(c if c.isprintable() or c in "\n\t" else ascii(c)[1:-1] for c in text)
 
 
 def results_console() -> LiteralConsole:

@@ -40,11 +40,12 @@ DEFAULT = "capam-plus"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
-    """Go through an episode one decision at a time, forth and back, and choose otherwise.
+    """Go through an episode one decision at a time, back and forth, and choose otherwise.
 
-    Shows whose turn it is, and every task as that robot has it before it: distance, travel, finish, slack, why it may
-    not be chosen, the policy's probability, who else could do it. Enter takes the policy's choice, a number another
-    task; ? lists the commands. Works over ssh, in 80 x 24.
+    Shows whose turn it is, and every task as that robot sees it: distance, travel, finish, slack, why it may not be
+    chosen, the policy's probability, who else could do it; at the end also the cost (Eq. 1 of the paper: the sum of
+    finish / deadline over the tasks missed). Enter takes the policy's choice, a name or number another task; ? lists
+    the commands. Works over ssh, in 80 x 24.
 
     For example:
       mrta-zoo step group1/r11a7i00.txt

@@ -15,6 +15,7 @@ from io import TextIOWrapper
 from mrta_zoo import __version__
 from mrta_zoo.errors import ConfigError, MrtaError
 from mrta_zoo.extras import require
+from mrta_zoo.fold import spelt_out
 from mrta_zoo.paths import check_no_url, is_utf8
 
 Command = Callable[[list[str]], None]
@@ -229,7 +230,7 @@ def _reconfigure(stream: TextIOWrapper, errors: str | None) -> None:
 def _complain(sentence: str) -> int:
     """Print an error as one line in which nothing steers the terminal, and give the exit code."""
     line = " ".join(sentence.split())
-    print("error:", "".join(c if c.isprintable() else ascii(c)[1:-1] for c in line), file=sys.stderr)
+    print("error:", spelt_out(line), file=sys.stderr)
     return USER_ERROR
 
 

@@ -1,8 +1,16 @@
-"""Text in lines of a given width, in which no word, and so no number, is broken."""
+"""Text fit for a terminal: in lines of a given width, in which no word, and so no number, is broken."""
 
 from __future__ import annotations
 
 import textwrap
+
+JOINERS = "\u200c\u200d\u200e\u200f"
+"""Characters without a shape of their own that writing needs: joiners of letters or emoji, and marks of direction."""
+
+
+def spelt_out(text: str) -> str:
+    """The text with what would steer a terminal in the form that it has in Python."""
+    return "".join(c if c.isprintable() or c in "\n\t" or c in JOINERS else ascii(c)[1:-1] for c in text)
 
 
 def fold(text: str, width: int, indent: str = "") -> list[str]:

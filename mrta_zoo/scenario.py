@@ -14,6 +14,7 @@ import numpy.typing as npt
 from mrta_zoo.counted import counted
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.html import map_of, table
+from mrta_zoo.paths import composed
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -206,6 +207,14 @@ def map_origin_for(places: FloatArray, map_size: tuple[float, float]) -> tuple[f
     return 0.0, 0.0
 
 
+def usable_name(name: object) -> str:
+    """The name of a task or robot as text without blanks around it, accents composed; "" if it cannot be one."""
+    if not isinstance(name, (str, int, np.integer)) or isinstance(name, bool):
+        return ""
+    text = composed(str(name).strip())
+    return "" if _UNPRINTABLE.search(text) else text
+
+
 def as_names(names: Iterable[object], who: str, count: int) -> tuple[str, ...]:
     """Names of `count` tasks or robots as text, numbers being names, too; none if they are the numbers from 0 on.
 
@@ -222,8 +231,8 @@ def as_names(names: Iterable[object], who: str, count: int) -> tuple[str, ...]:
         raise ScenarioError(f"{who}_names has {counted(len(given), 'name')}; expected {expected}")
     seen: dict[str, int] = {}
     for index, name in enumerate(given):
-        text = str(name).strip() if isinstance(name, (str, int, np.integer)) and not isinstance(name, bool) else ""
-        if not text or _UNPRINTABLE.search(text):
+        text = usable_name(name)
+        if not text:
             raise ScenarioError(f"{who} {index} has the name {name!r}; expected text without control characters")
         if text in seen:
             raise ScenarioError(f"{who} {index} has the name {text!r}, as {who} {seen[text]}; expected {expected}")

@@ -39,6 +39,9 @@ class TrainCommand:
 
     Example: mrta-zoo train --preset smoke --out runs/smoke
 
+    Each validation shows the mean share of tasks completed, and the mean cost per task (Eq. 1 of the paper: the sum of
+    finish / deadline over the tasks missed).
+
     The folder then holds policy.safetensors and policy.json (the best policy by validation; usable as
     `mrta-zoo eval --methods runs/smoke`), config.json, history.csv, checkpoints, and TensorBoard events
     (`tensorboard --logdir runs`). Stopped at any moment, even killed, the run goes on with --resume to the same

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from rich.cells import cell_len, set_cell_size
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.paths import composed
 
 LISTED = 8
 """Names that a message lists at most."""
@@ -40,8 +41,8 @@ def headings(who: str, names: Sequence[str]) -> tuple[str, ...]:
 
 def find(text: str, names: Sequence[str]) -> int | None:
     """The task or robot that a text means; None if it is neither a name nor a whole number."""
-    if text in names:
-        return names.index(text)
+    if (name := composed(text)) in names:
+        return names.index(name)
     number = text.isdecimal() and text.isascii() and len(text) <= DIGITS
     return int(text) if number and numbers_count(names) else None
 

@@ -1,10 +1,10 @@
 """Scenarios as one CSV table: a header row, then one row for each task and robot, and maybe one for the map.
 
-Columns, in any order: ``kind`` (task, robot, map or origin), ``x``, ``y``, ``deadline`` and ``workload`` of tasks,
-``capacity`` and ``speed`` (1 if empty) of robots, and optionally ``name`` (any text) and ``id``. Where the ids of the
-tasks are each of 0..N-1 once, they are their numbers; otherwise rows count in order and the ids are names. The same
-holds for the robots. A map row gives the width as x and the height as y, an origin row the map's lowest x and y; what
-the map is without them, `mrta_zoo.io.parts.assemble` says.
+Columns, in any order, in small or capital letters: ``kind`` (task, robot, map or origin), ``x``, ``y``, ``deadline``
+and ``workload`` of tasks, ``capacity`` and ``speed`` (1 if empty) of robots, and optionally ``name`` (any text) and
+``id``. Where the ids of the tasks are each of 0..N-1 once, they are their numbers; otherwise rows count in order and the
+ids are names. The same holds for the robots. A map row gives the width as x and the height as y, an origin row the map's
+lowest x and y; what the map is without them, `mrta_zoo.io.parts.assemble` says.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def read_csv_part(path: StrPath) -> Part:
         ScenarioError: if it is missing or malformed.
     """
     table = read_table(path, ScenarioError)
-    header_where, header = table[0]
+    header_where, header = table[0][0], [column.lower() for column in table[0][1]]
     _check_header(header_where, header)
     tasks: list[tuple[str, TaskRow]] = []
     robots: list[tuple[str, RobotRow]] = []

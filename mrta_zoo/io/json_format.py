@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 import msgspec
 from msgspec import Meta
 
 from mrta_zoo.errors import PlanError, ScenarioError
-from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow
+from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, in_id_order
 from mrta_zoo.io.source import StrPath, read_text
 from mrta_zoo.io.strict_json import read_document, write_document
 from mrta_zoo.left_out import Reason
@@ -41,7 +41,10 @@ class MapJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class TaskJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One task: its place, the latest finish that counts, the work to be done, and its name or, instead, its id."""
+    """One task: its place, the latest finish that counts, the work to be done, its name, and its id.
+
+    Where the ids are each of 0..N-1 once they number the tasks; otherwise they are names of those that have no name.
+    """
 
     x: float
     y: float
@@ -52,7 +55,7 @@ class TaskJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class RobotJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One robot: its start, its work and its way per time unit, and its name or, instead, its id."""
+    """One robot: its start, its work and its way per time unit, its name, and its id, as those of tasks."""
 
     x: float
     y: float
@@ -62,15 +65,18 @@ class RobotJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     id: Name | None = None
 
 
+RowJson = TypeVar("RowJson", TaskJson, RobotJson)
+
+
 class ScenarioJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A scenario file. Robots may be left out if they come from an agent file."""
+    """A scenario file. Robots may be left out if they come from an agent file, and so may the map."""
 
     format: Literal["mrta_zoo.scenario"]
     version: Literal[1]
-    map: MapJson
     tasks: Annotated[tuple[TaskJson, ...], Meta(min_length=1)]
     robots: tuple[RobotJson, ...] = ()
     name: str = ""
+    map: MapJson | None = None
 
 
 class ScheduledTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
@@ -147,29 +153,45 @@ def read_json_part(path: StrPath) -> Part:
     return json_part(path, data.map, data.tasks, data.robots, data.name or Path(path).stem)
 
 
-def json_part(path: StrPath, size: MapJson, tasks: Sequence[TaskJson], robots: Sequence[RobotJson], name: str) -> Part:
+def json_part(
+    path: StrPath, size: MapJson | None, tasks: Sequence[TaskJson], robots: Sequence[RobotJson], name: str
+) -> Part:
     """What any JSON file that holds a scenario says of it."""
-    x, y = (math.nan if corner is None else corner for corner in (size.x, size.y))
-    if math.isnan(x) != math.isnan(y):
-        raise ScenarioError(f"{path}: map has only one of x and y; expected both, or neither")
     return Part(
         path=str(path),
-        tasks=tuple(
-            TaskRow(f"{path}: tasks[{index}]", task.x, task.y, task.deadline, task.workload, _name(task))
-            for index, task in enumerate(tasks)
+        tasks=in_id_order(
+            [
+                (_text(task.id), TaskRow(where, task.x, task.y, task.deadline, task.workload, _text(task.name)))
+                for where, task in _placed(path, "tasks", tasks)
+            ],
+            "task",
         ),
-        robots=tuple(
-            RobotRow(f"{path}: robots[{index}]", robot.x, robot.y, robot.capacity, robot.speed, _name(robot))
-            for index, robot in enumerate(robots)
+        robots=in_id_order(
+            [
+                (_text(robot.id), RobotRow(where, robot.x, robot.y, robot.capacity, robot.speed, _text(robot.name)))
+                for where, robot in _placed(path, "robots", robots)
+            ],
+            "robot",
         ),
-        map=MapRow(f"{path}: map", size.width, size.height, x, y),
+        map=None if size is None else _map(path, size),
         name=name,
     )
 
 
-def _name(row: TaskJson | RobotJson) -> str:
-    given = row.id if row.name is None else row.name
-    return "" if given is None else str(given)
+def _map(path: StrPath, size: MapJson) -> MapRow:
+    x, y = (math.nan if corner is None else corner for corner in (size.x, size.y))
+    if math.isnan(x) != math.isnan(y):
+        raise ScenarioError(f"{path}: map has only one of x and y; expected both, or neither")
+    return MapRow(f"{path}: map", size.width, size.height, x, y)
+
+
+def _placed(path: StrPath, field: str, rows: Sequence[RowJson]) -> Iterator[tuple[str, RowJson]]:
+    """Rows with where they stand."""
+    return ((f"{path}: {field}[{index}]", row) for index, row in enumerate(rows))
+
+
+def _text(name: Name | None) -> str:
+    return "" if name is None else str(name)
 
 
 def is_other_json(path: Path) -> bool:

@@ -14,9 +14,7 @@ from mrta_zoo.counted import counted
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.source import check_name, shown
 from mrta_zoo.paths import composed
-from mrta_zoo.scenario import BOUNDS, LARGEST, SMALLEST, FloatArray, Scenario, map_origin_for
-
-_NUMBER = re.compile(r"[0-9]{1,18}")
+from mrta_zoo.scenario import BOUNDS, LARGEST, SMALLEST, FloatArray, Scenario, map_origin_for, usable_name
 
 
 class TaskRow(NamedTuple):
@@ -166,12 +164,17 @@ def _names(rows: Sequence[TaskRow | RobotRow], who: str) -> tuple[str, ...]:
         if not row.name:
             raise ScenarioError(f"{row.where}: this {who} has no name; expected one for each {who}, as others have one")
         check_name(row.name, row.where, f"the {who}'s name", ScenarioError)
-        if row.name in first:
+        name = usable_name(row.name)
+        if not name:
             raise ScenarioError(
-                f"{row.where}: {who} name {shown(row.name)} was already used in "
-                f"{place_in_file(first[row.name].where)}; expected each name once"
+                f"{row.where}: the {who}'s name is {shown(row.name)}; expected text without control characters"
             )
-        first[row.name] = row
+        if name in first:
+            raise ScenarioError(
+                f"{row.where}: {who} name {shown(name)} was already used in "
+                f"{place_in_file(first[name].where)}; expected each name once"
+            )
+        first[name] = row
     return tuple(first)
 
 
@@ -207,7 +210,7 @@ def place_in_file(where: str) -> str:
 def in_id_order(rows: Sequence[tuple[str, Row]], what: str) -> tuple[Row, ...]:
     """Rows with the ids they came with: sorted by them if they are each of 0..N-1 once, otherwise called by them.
 
-    Rows that have a name keep it.
+    "01" is no such number, but a name. Rows that have a name keep it.
 
     Raises:
         ScenarioError: for an id met before, or missing where others have one.
@@ -215,17 +218,17 @@ def in_id_order(rows: Sequence[tuple[str, Row]], what: str) -> tuple[Row, ...]:
     ids = [given for given, _ in rows]
     if not any(ids):
         return tuple(row for _, row in rows)
-    numbers = [int(given) if _NUMBER.fullmatch(given) else given for given in ids]
-    first: dict[int | str, Row] = {}
-    for number, (given, row) in zip(numbers, rows, strict=True):
+    first: dict[str, Row] = {}
+    for given, row in rows:
         if not given:
             raise ScenarioError(f"{row.where}: this {what} has no id; expected one for each {what}, as others have one")
-        if number in first:
+        if given in first:
             raise ScenarioError(
-                f"{row.where}: {what} id {shown(given)} was already used in {place_in_file(first[number].where)}; "
+                f"{row.where}: {what} id {shown(given)} was already used in {place_in_file(first[given].where)}; "
                 "expected each id once"
             )
-        first[number] = row
-    if set(numbers) == set(range(len(rows))):
-        return tuple(first[number] for number in range(len(rows)))
+        first[given] = row
+    numbers = [str(index) for index in range(len(rows))]
+    if first.keys() == set(numbers):
+        return tuple(first[number] for number in numbers)
     return tuple(row if row.name else row._replace(name=given) for given, row in rows)

@@ -114,3 +114,53 @@ def test_names_that_turn_round_what_follows_are_refused() -> None:
         Scenario(
             NAMED.task_xy, NAMED.deadline, NAMED.workload, NAMED.robot_xy, NAMED.capacity, task_names=("a", "b\u202e")
         )
+
+
+def scenario_json(tasks: str, robots: str = '{"x": 1, "y": 1, "capacity": 1}') -> str:
+    """A scenario file without a map; every task is due at 9."""
+    return f'{{"format": "mrta_zoo.scenario", "version": 1, "tasks": [{tasks}], "robots": [{robots}]}}'.replace(
+        "DUE", '"x": 1, "y": 1, "deadline": 9, "workload"'
+    )
+
+
+@pytest.mark.parametrize("ids", [("01", "00"), ("000", "001"), ("01", "1"), ("2", "1")])
+def test_texts_that_are_no_numbering_are_names_in_every_format(tmp_path: Path, ids: tuple[str, str]) -> None:
+    """ "01" is no number 1: its zero would be lost."""
+    json, table, taptc = (tmp_path / f"cas.{suffix}" for suffix in ("json", "csv", "txt"))
+    json.write_text(scenario_json(", ".join(f'{{"id": "{each}", DUE: {n}}}' for n, each in enumerate(ids))))
+    rows = "".join(f"task,{each},1,1,9,{n},\n" for n, each in enumerate(ids))
+    table.write_text(f"kind,id,x,y,deadline,workload,capacity\n{rows}robot,,1,1,,,1\n")
+    taptc.write_text("1 2 9 9\n" + "".join(f"{each} 1 1 {n} 9\n" for n, each in enumerate(ids)))
+    (tmp_path / "bots.txt").write_text("1 9 9\n0 1 1 1\n")
+    for scenario in (read_scenario(json), read_scenario(table), read_scenario(taptc, tmp_path / "bots.txt")):
+        assert scenario.task_names == ids
+        assert scenario.workload.tolist() == [0, 1]
+        write_taptc(scenario, tmp_path / "again.txt", tmp_path / "bots2.txt")
+        assert read_scenario(tmp_path / "again.txt", tmp_path / "bots2.txt").task_names == ids
+
+
+def test_ids_number_tasks_in_every_format(tmp_path: Path) -> None:
+    json, table = tmp_path / "cas.json", tmp_path / "cas.csv"
+    json.write_text(scenario_json('{"id": 1, DUE: 7}, {"id": "0", DUE: 5}'))
+    table.write_text("Kind,ID,x,y,Deadline,workload,capacity\ntask,1,1,1,9,7,\ntask,0,1,1,9,5,\nrobot,,1,1,,,1\n")
+    for scenario in (read_scenario(json), read_scenario(table)):
+        assert scenario.task_names == ()
+        assert scenario.workload.tolist() == [5, 7]
+        assert scenario.map_size == (1, 1)  # no map is named: the smallest that holds all
+
+
+def test_accents_may_be_written_in_two_ways(tmp_path: Path) -> None:
+    path = tmp_path / "cas.json"
+    path.write_text(scenario_json('{"name": "Cafe\\u0301", DUE: 1}'))
+    assert read_scenario(path).task_names == ("Caf\u00e9",)
+    path.write_text(scenario_json('{"name": "Cafe\\u0301", DUE: 1}, {"name": "Caf\\u00e9", DUE: 1}'))
+    with pytest.raises(ScenarioError, match=r"tasks\[1\]: task name 'Café' was already used in tasks\[0\]"):
+        read_scenario(path)
+
+
+@pytest.mark.parametrize("name", ["\\u202eA", "  ", "a\\tb"])
+def test_names_that_nobody_could_read_are_refused_where_they_stand(tmp_path: Path, name: str) -> None:
+    path = tmp_path / "cas.json"
+    path.write_text(scenario_json(f'{{"name": "{name}", DUE: 1}}'))
+    with pytest.raises(ScenarioError, match=r"cas\.json: tasks\[0\]: the task's name is '.*'; expected text without"):
+        read_scenario(path)
