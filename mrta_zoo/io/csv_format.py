@@ -2,9 +2,9 @@
 
 Columns, in any order, in small or capital letters: ``kind`` (task, robot, map or origin), ``x``, ``y``, ``deadline``
 and ``workload`` of tasks, ``capacity`` and ``speed`` (1 if empty) of robots, and optionally ``name`` (any text) and
-``id``. Where the ids of the tasks are each of 0..N-1 once, they are their numbers; otherwise rows count in order and the
-ids are names. The same holds for the robots. A map row gives the width as x and the height as y, an origin row the map's
-lowest x and y; what the map is without them, `mrta_zoo.io.parts.assemble` says.
+``id``. Where the ids of the tasks are each of 0..N-1 once, they are their numbers; otherwise rows count in order and
+the ids are names. The same holds for the robots. A map row gives the width as x and the height as y, an origin row the
+map's lowest x and y; what the map is without them, `mrta_zoo.io.parts.assemble` says.
 """
 
 from __future__ import annotations
