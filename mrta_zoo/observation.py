@@ -125,6 +125,7 @@ class Observer:
         self._looked_at: Mission | None = None
         self._bind()
         self._tasks[:n, 0:2] = np.clip((scenario.task_xy - scales.origin) / scales.length, 0.0, 1.0)
+        self._starts = np.clip((scenario.robot_xy - scales.origin) / scales.length, 0.0, 1.0)
         self._tasks[:n, 2] = np.minimum(scenario.deadline / scales.time, 1.0)
         self._tasks[:n, 3] = np.minimum(scenario.workload / scales.work, 1.0)
         self._robots[:m, 2] = np.minimum(scenario.capacity / scales.capacity, 1.0)
@@ -153,8 +154,7 @@ class Observer:
         for robot, route in enumerate(mission.routes):
             if len(route) != self._last_taken[robot]:
                 self._last_taken[robot] = len(route)
-                place = (mission.position[robot] - scales.origin) / scales.length
-                self._robots[robot, 0:2] = np.minimum(np.maximum(place, 0.0), 1.0)
+                self._robots[robot, 0:2] = self._tasks[route[-1], 0:2] if route else self._starts[robot]
                 self._robots[robot, 4] = min(mission.ready[robot] / scales.time, 1.0)
         if mission.retired != self._last_retired:
             self._last_retired = list(mission.retired)

@@ -14,7 +14,7 @@ from pettingzoo import AECEnv
 from pettingzoo.utils.env_logger import EnvLogger
 from pettingzoo.utils.wrappers import BaseWrapper, OrderEnforcingWrapper
 
-from mrta_zoo.errors import OutOfBoundsError
+from mrta_zoo.errors import ActionError, OutOfBoundsError
 from mrta_zoo.world import as_action
 
 
@@ -69,11 +69,13 @@ class IllegalActionWrapper(_DirectBooks):
         self._illegal_reward = illegal_reward
 
     def step(self, action: Any) -> None:
-        """Step, if the action is legal or its agent has terminated; else end the episode."""
+        """Step or, where the environment refuses the action, end the episode."""
         env = self._innermost
-        if self._over() or env.mask(env.agent_selection)[action]:
+        try:
             self.env.step(action)
-        else:
+        except OutOfBoundsError:
+            raise
+        except ActionError:  # and nothing has changed
             EnvLogger.warn_on_illegal_move()
             env.end_by(env.agent_selection, self._illegal_reward)
 
