@@ -54,8 +54,16 @@ class ScenarioBatch:
         device: torch.device | str = "cpu",
         max_tasks: int | None = None,
         max_robots: int | None = None,
+        mask_rule: MaskRule = "feasible",
     ) -> ScenarioBatch:
         """Stack scenarios, padded to the largest of them or to the given sizes.
+
+        Args:
+            scenarios: B of them.
+            device: where the tensors shall be.
+            max_tasks: room for tasks.
+            max_robots: room for robots.
+            mask_rule: that of the missions to come, for networks that look at them: see `scales.Scales.of`.
 
         Raises:
             ConfigError: if there is no scenario, or one does not fit.
@@ -93,7 +101,7 @@ class ScenarioBatch:
             capacity=stack("capacity", m, 1.0),
             speed=stack("speed", m, 1.0),
             robot_exists=exists([s.num_robots for s in scenarios], m),
-            scales=_stacked_scales(scenarios, device),
+            scales=_stacked_scales(scenarios, mask_rule, device),
         )
 
     def __len__(self) -> int:
@@ -131,8 +139,8 @@ class ScenarioBatch:
         return ScenarioBatch(**rows, scales=self.scales.each(change))
 
 
-def _stacked_scales(scenarios: Sequence[Scenario], device: torch.device | str) -> Scales:
-    scales = [Scales.of(scenario) for scenario in scenarios]
+def _stacked_scales(scenarios: Sequence[Scenario], mask_rule: MaskRule, device: torch.device | str) -> Scales:
+    scales = [Scales.of(scenario, mask_rule) for scenario in scenarios]
 
     def stack(name: str) -> Tensor:
         return torch.from_numpy(np.array([getattr(each, name) for each in scales])).to(device)

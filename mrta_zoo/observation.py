@@ -35,6 +35,7 @@ import numpy.typing as npt
 from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.mission import Mission
+from mrta_zoo.rules import MaskRule
 from mrta_zoo.scales import Scales
 from mrta_zoo.scenario import Scenario
 
@@ -112,10 +113,17 @@ def split(flat: Any, max_tasks: int, max_robots: int) -> dict[str, Any]:
 
 
 class Observer:
-    """Turns a mission into observations. Keeps the tables of its scenario, so that a look is cheap."""
+    """Turns a mission into observations. Keeps the tables of its scenario, so that a look is cheap.
 
-    def __init__(self, scenario: Scenario, max_tasks: int, max_robots: int) -> None:
-        self.scales = scales = Scales.of(scenario)
+    Args:
+        scenario: of the missions that are looked at.
+        max_tasks: number of task rows.
+        max_robots: number of robot rows.
+        mask_rule: that of the missions.
+    """
+
+    def __init__(self, scenario: Scenario, max_tasks: int, max_robots: int, mask_rule: MaskRule = "feasible") -> None:
+        self.scales = scales = Scales.of(scenario, mask_rule)
         self._n, self._m = n, m = scenario.num_tasks, scenario.num_robots
         self._max_tasks, self._max_robots = max_tasks, max_robots
         self._layout = _layout(max_tasks, max_robots)

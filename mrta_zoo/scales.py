@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from mrta_zoo.rules import finish_time, may_choose, travel_time
+from mrta_zoo.rules import MaskRule, finish_time, may_choose, travel_time
 from mrta_zoo.scenario import FloatArray, Scenario
 
 BoolArray = npt.NDArray[np.bool_]
@@ -27,8 +27,10 @@ BoolArray = npt.NDArray[np.bool_]
 MOST_MARGIN = 0.25
 """The frame is the map where no margin around the places is wider than this share of their extent."""
 ODD = 10.0
-"""A capacity or speed is odd if it is more than this many times as large as those of half of the robots; places are, if
-nobody can get to or from them in time, and the box around all is this many times as large as without them."""
+"""A capacity or speed is odd if it is more than this many times as large as the next smaller one, and `ENOUGH`."""
+ENOUGH = 50.0
+"""Crossings of the frame in the time T, and of the largest workload in the time of a crossing: what is faster or
+stronger makes hardly a difference."""
 HEAVY = 4.0
 """W is at most this many times as large as half of the workloads."""
 
@@ -56,19 +58,27 @@ class Scales:
     speed: Any
 
     @classmethod
-    def of(cls, scenario: Scenario) -> Scales:
-        """The scales of a scenario; floats and (2,) float64 arrays."""
-        possible = in_time(scenario)
+    def of(cls, scenario: Scenario, mask_rule: MaskRule = "feasible") -> Scales:
+        """The scales of a scenario; floats and (2,) float64 arrays.
+
+        Args:
+            scenario: the mission.
+            mask_rule: by it, what robots may choose, which is what counts.
+        """
+        possible = in_time(scenario) if mask_rule == "feasible" else np.ones((scenario.num_robots, 1), dtype=np.bool_)
         origin, extent = frame_of(scenario, possible)
-        useful = possible.any(axis=1) if possible.any() else slice(None)
-        capacity, speed = usual(scenario.capacity[useful]), usual(scenario.speed[useful])
+        useful = possible.any(axis=1) if possible.any() else np.ones(scenario.num_robots, dtype=np.bool_)
+        capacities, speeds, length = scenario.capacity[useful], scenario.speed[useful], float(extent.max())
+        time = slack_time(scenario, extent, useful)
+        work = work_scale(scenario, float(capacities.max()))
+        speed = usual(speeds, ENOUGH * length / time)
         return cls(
             origin=origin,
             extent=extent,
-            length=float(extent.max()),
-            time=slack_time(scenario, float(np.hypot(*extent))),
-            work=work_scale(scenario, capacity),
-            capacity=capacity,
+            length=length,
+            time=time,
+            work=work,
+            capacity=usual(capacities, ENOUGH * work * speed / length),
             speed=speed,
         )
 
@@ -92,19 +102,19 @@ class Scales:
 def frame_of(scenario: Scenario, possible: BoolArray | None = None) -> tuple[FloatArray, FloatArray]:
     """The part of the plane that the mission takes place in: lowest x and y, and width and height, both (2,).
 
-    It is the map where the places fill it more or less, otherwise the box around all tasks and robots, less odd places
-    (see `ODD`): how large a map was declared, and where 0 and 0 lie, is a matter of taste.
+    It is the map where the places fill it more or less, otherwise the box around them: how large a map was declared,
+    and where 0 and 0 lie, is a matter of taste. Tasks that no robot can do, and robots that can do none, do not count.
 
     Args:
         scenario: the mission.
-        possible: its `in_time`, if known.
+        possible: (M, N) or (M, 1) what robots could do; by default, `in_time`.
     """
-    least, most = _box(scenario.task_xy, scenario.robot_xy)
     possible = in_time(scenario) if possible is None else possible
-    if possible.any():
-        low, high = _box(scenario.task_xy[possible.any(axis=0)], scenario.robot_xy[possible.any(axis=1)])
-        if 0 < ODD * (high - low).max() < (most - least).max():
-            return low, high - low
+    tasks, robots = scenario.task_xy, scenario.robot_xy
+    if possible.any() and not possible.all():
+        tasks, robots = tasks[possible.any(axis=0)], robots[possible.any(axis=1)]
+    least = np.minimum(tasks.min(axis=0), robots.min(axis=0))
+    most = np.maximum(tasks.max(axis=0), robots.max(axis=0))
     origin, end = np.array(scenario.map_origin), np.array(scenario.map_end)
     size = float((most - least).max())
     margin = float(max((least - origin).max(), (end - most).max()))
@@ -121,33 +131,49 @@ def in_time(scenario: Scenario) -> BoolArray:
     return np.asarray(may_choose("feasible", finish, 0.0, scenario.deadline))
 
 
-def slack_time(scenario: Scenario, crossing: float) -> float:
+def slack_time(scenario: Scenario, extent: FloatArray, useful: BoolArray) -> float:
     """T: the latest deadline or, if earlier, the time by which all that can wait could be done: none binds later.
 
-    Say that k tasks have a deadline by d, and the others later ones. By d, the k tasks are done or missed, and
-    every robot is free; from then on one robot could do all others by itself, crossing the frame to each of them. So
-    none of them needs a deadline later than d and the time which that takes. The earliest such time over all d is
-    returned, for the robot that is the median in how long it would take for all tasks; of two, the slower one.
+    Say that some tasks have a deadline by d, and k others later ones. By d, the former are done or missed, and every
+    robot is free; from then on the better half of the robots, m of them, could do the others: ⌈k/m⌉ each, the heaviest
+    shared out first, in turn, which gives nobody more than the m-th part of all work and (1 − 1/m) of the heaviest. On
+    a square of side L there is a way through n places that is no longer than (√(2n) + 1.75) L (L. Few, "The shortest
+    path and the shortest road through n points", Mathematika 2, 1955), nor of course than n times across. So none of
+    the k needs a deadline later than d and the time which that takes. The earliest such time over all d is returned.
 
     Args:
         scenario: the mission.
-        crossing: the way across the frame.
+        extent: (2,) width and height of its frame.
+        useful: (M,) the robots that can do anything; at least one.
     """
-    alone = crossing * scenario.num_tasks / scenario.speed + scenario.workload.sum() / scenario.capacity
-    robot = int(np.argsort(alone, kind="stable")[scenario.num_robots // 2])
+    across, side = float(np.hypot(*extent)), float(extent.max())
+    speed, capacity = scenario.speed[useful], scenario.capacity[useful]
+    alone = across * scenario.num_tasks / speed + scenario.workload.sum() / capacity
+    better = np.argsort(alone, kind="stable")[: len(alone) // 2 + 1]
+    speed, capacity, robots = speed[better].min(), capacity[better].min(), len(better)
     order = np.argsort(scenario.deadline, kind="stable")
-    each = crossing / scenario.speed[robot] + scenario.workload[order] / scenario.capacity[robot]
-    later = np.cumsum(each[::-1])[::-1] - each
-    return float((scenario.deadline[order] + later).min())
+    later = scenario.num_tasks - 1 - np.arange(scenario.num_tasks)
+    each = -(-later // robots)
+    way = np.minimum(each * across, (np.sqrt(2.0 * each) + 1.75) * side + across) * (each > 0)
+    work = scenario.workload[order]
+    # Of the tasks that come later in this order: what they take together, and the most that one takes.
+    total = np.cumsum(work[::-1])[::-1] - work
+    heaviest = np.append(np.maximum.accumulate(work[:0:-1])[::-1], 0.0)
+    needed = way / speed + (total / robots + (1 - 1 / robots) * heaviest) / capacity
+    needed[-1] = 0.0  # exactly
+    return float((scenario.deadline[order] + needed).min())
 
 
-def usual(values: FloatArray) -> float:
-    """The largest of some positive numbers, less those that are more than `ODD` times as large as half of them.
+def usual(values: FloatArray, enough: float) -> float:
+    """The largest of some positive numbers, less those that are odd: beyond `enough`, and `ODD` times the next smaller.
 
     Args:
         values: (K,) at least one number > 0.
+        enough: > 0; what is more makes hardly a difference.
     """
-    return float(values[values <= ODD * _median(values)].max())
+    ordered = np.sort(values)
+    odd = (ordered[1:] > ODD * ordered[:-1]) & (ordered[1:] > enough)
+    return float(ordered[odd.argmax()] if odd.any() else ordered[-1])
 
 
 def work_scale(scenario: Scenario, capacity: float) -> float:
@@ -158,14 +184,7 @@ def work_scale(scenario: Scenario, capacity: float) -> float:
     work = scenario.workload[scenario.workload > 0]
     possible = scenario.workload[(scenario.workload > 0) & (scenario.workload <= capacity * scenario.deadline)]
     counted = possible if len(possible) else work
-    return min(float(counted.max()), HEAVY * _median(counted)) if len(counted) else 1.0
-
-
-def _box(tasks: FloatArray, robots: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The lowest and the highest x and y of (…, 2) places."""
-    return np.minimum(tasks.min(axis=0), robots.min(axis=0)), np.maximum(tasks.max(axis=0), robots.max(axis=0))
-
-
-def _median(values: FloatArray) -> float:
-    """The lower one, where there are two, so that one large value does not count."""
-    return float(np.sort(values)[(len(values) - 1) // 2])
+    if not len(counted):
+        return 1.0
+    middle = np.sort(counted)[(len(counted) - 1) // 2]  # the lower one of two, so that one large value does not count
+    return float(min(counted.max(), HEAVY * middle))

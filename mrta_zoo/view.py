@@ -16,7 +16,7 @@ LEAST_SIDE = 0.25
 def shown_box(scenario: Scenario) -> tuple[FloatArray, FloatArray]:
     """The map or, where the mission would be lost on it, where the mission is: lowest x and y, width and height."""
     low, extent = np.array(scenario.map_origin), np.array(scenario.map_size)
-    frame = frame_of(scenario)
+    frame = frame_of(scenario, np.ones((1, 1), dtype=np.bool_))  # of all places, also those out of reach
     if frame[1].max() < LEAST_FILLED * extent.max():
         low, extent = frame
     size = np.maximum(extent, LEAST_SIDE * extent.max())

@@ -78,7 +78,7 @@ class World:
         else:
             self.settings.check_fits(scenario)
         self._mission = mission = Mission(scenario, self.settings.mask_rule)
-        self._observer = Observer(scenario, self.max_tasks, len(self.names))
+        self._observer = Observer(scenario, self.max_tasks, len(self.names), self.settings.mask_rule)
         self._looked = False
         n, m = scenario.num_tasks, scenario.num_robots
         self.agents = self.names[:m] if self.settings.absent == "omit" else list(self.names)

@@ -52,7 +52,7 @@ def best_plan(network: Scorer, scenario: Scenario, how: Decoding) -> Plan:
         ConfigError: if the network gives probabilities that are not finite.
         OutOfTimeError: if `how` is hurried and there is no plan in time.
     """
-    batch, best = ScenarioBatch.of([scenario]), _Best()
+    batch, best = ScenarioBatch.of([scenario], mask_rule=how.mask_rule), _Best()
     if not (how.decode == "augment" and how.until is None):  # whose first mission is the greedy one
         until = how.until if how.hurried else None
         best.offer(roll_out(network, batch, mask_rule=how.mask_rule, keep_plans=True, until=until))

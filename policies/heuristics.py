@@ -12,7 +12,7 @@ import numpy.typing as npt
 from mrta_zoo.errors import ActionError
 from mrta_zoo.observation import EGO_FEATURES, TASK_FEATURES, Observation
 
-TIE = 1e-6
+TIE = 2e-7
 """Distances as shares of the frame's longer side (`mrta_zoo.scales`) are equal if they differ by no more: observations
 are rounded to float32."""
 

@@ -224,7 +224,7 @@ class NeuralPolicy:
     def solve_batch(self, scenarios: Sequence[Scenario], mask_rule: MaskRule | None = None) -> list[Plan]:
         """Greedy plans for many missions at once, faster than one by one."""
         rule: MaskRule = mask_rule or self.info.mask_rule
-        rollout = roll_out(self.network, ScenarioBatch.of(scenarios), mask_rule=rule, keep_plans=True)
+        rollout = roll_out(self.network, ScenarioBatch.of(scenarios, mask_rule=rule), mask_rule=rule, keep_plans=True)
         return [
             Plan(plan.routes, scenario.name, self.name) for plan, scenario in zip(rollout.plans, scenarios, strict=True)
         ]

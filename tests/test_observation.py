@@ -33,7 +33,7 @@ SCENARIO = Scenario(
 
 
 def look(mission: Mission, robot: int, max_tasks: int = 5, max_robots: int = 3) -> dict[str, Any]:
-    return Observer(mission.scenario, max_tasks, max_robots).observe(mission, robot)
+    return Observer(mission.scenario, max_tasks, max_robots, mission.mask_rule).observe(mission, robot)
 
 
 def under_way() -> Mission:
@@ -128,7 +128,7 @@ def test_action_mask() -> None:
 
 def test_an_observation_is_the_callers_own() -> None:
     mission = under_way()
-    observer = Observer(SCENARIO, 5, 3)
+    observer = Observer(SCENARIO, 5, 3, "unvisited")
     first, second = observer.observe(mission, 1), observer.observe(mission, 1)
     for part in first["observation"].values():
         part[:] = 77
@@ -141,7 +141,7 @@ def test_an_observation_is_the_callers_own() -> None:
 
 def test_an_observation_does_not_change_with_the_mission() -> None:
     mission = under_way()
-    observer = Observer(SCENARIO, 5, 3)
+    observer = Observer(SCENARIO, 5, 3, "unvisited")
     seen = observer.observe(mission, 1)
     before = {name: part.copy() for name, part in seen["observation"].items()}
     mission.assign(3)
@@ -155,7 +155,7 @@ def test_an_observation_does_not_change_with_the_mission() -> None:
 def test_a_long_lived_observer_sees_what_a_new_one_sees() -> None:
     for seed, scenario in enumerate(seeded_scenarios(40, 40)):
         mission, chooser = Mission(scenario, "active"), seeded_chooser(seed)
-        observer = Observer(scenario, 12, 4)
+        observer = Observer(scenario, 12, 4, mission.mask_rule)
         while not mission.done:
             mission.assign(chooser(mission.mask(mission.actor)))
             for robot in range(scenario.num_robots):
@@ -182,10 +182,10 @@ def test_every_observation_is_in_its_space() -> None:
 
 
 def test_scales() -> None:
-    scales = Scales.of(SCENARIO)
+    scales = Scales.of(SCENARIO, "unvisited")
     assert (scales.length, scales.time, scales.work, scales.capacity, scales.speed) == (75.0, 40.0, 8.0, 2.0, 5.0)
-    assert Scales.of(SCENARIO).crossing_ratio == pytest.approx(0.375 / 1.375)
-    assert Scales.of(SCENARIO).work_ratio == pytest.approx(0.1 / 1.1)
+    assert scales.crossing_ratio == pytest.approx(0.375 / 1.375)
+    assert scales.work_ratio == pytest.approx(0.1 / 1.1)
 
 
 def test_no_work_at_all_has_scale_one() -> None:

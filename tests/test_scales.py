@@ -59,9 +59,8 @@ def test_a_place_that_nobody_can_get_to_is_not_in_the_frame() -> None:
     far = [[0, 0], [30, 0], [0, 40], [4000, 0]]  # due at 90; 4000 away takes 800
     mission = replace(LINE, task_xy=far, deadline=[10, 60, 90, 90], workload=[0, 6, 3, 0], map_size=(5000, 5000))
     assert [each.tolist() for each in frame_of(mission)] == [[0, 0], [30, 40]]
-    # At 390 it is not odd: the box around all is less than ten times 40 wide.
-    near = replace(mission, task_xy=[*far[:3], [390, 0]])
-    assert [each.tolist() for each in frame_of(near)] == [[0, 0], [390, 40]]
+    # By a rule that lets robots go there all the same, it counts.
+    assert Scales.of(mission, "active").extent.tolist() == [4000, 40]
     # With all the time in the world somebody can get there.
     assert [each.tolist() for each in frame_of(replace(mission, deadline=[10, 60, 90, 900]))] == [[0, 0], [4000, 40]]
     # A robot out there can do nothing, either.
@@ -71,10 +70,17 @@ def test_a_place_that_nobody_can_get_to_is_not_in_the_frame() -> None:
 
 def test_the_time_that_can_matter_by_hand() -> None:
     # The frame is crossed in hypot(40, 50) / 5 = 12.81; works take 0, 3 and 1.5.
-    # From 10 on: tasks 1 and 2, 10 + 2 · 12.81 + 4.5 = 40.1; from 60 on: task 2, 60 + 12.81 + 1.5. Or from 90 on, none.
+    # From 10 on: tasks 1 and 2, 10 + 2 · 12.81 + 4.5 = 40.1 (2 · 64.03 is less than (√4 + 1.75) · 50 + 64.03 of way);
+    # from 60 on: task 2, 60 + 12.81 + 1.5. Or from 90 on, none.
     assert Scales.of(LINE).time == pytest.approx(10 + 2 * np.hypot(40, 50) / 5 + 4.5)
     # With a slow robot all could not wait so long: 10 + 2 · 128.1 + 4.5 and 60 + 128.1 + 1.5 are beyond 90.
     assert Scales.of(replace(LINE, speed=[0.5])).time == 90
+    # 40 of 79 robots could do 80 tasks, two each, in 2 · 12.81; of 80 · 2 / 2 = 80 of work a 40th each, and 39/40 of 1.
+    many = Scenario(
+        task_xy=[[0, 0], *[[40, 50]] * 80], deadline=[10, *[900] * 80], workload=[0, *[2] * 80],
+        robot_xy=[[0, 0]] * 79, capacity=[2] * 79, speed=[5] * 79, map_size=(40, 50),
+    )  # fmt: skip
+    assert Scales.of(many).time == pytest.approx(10 + 2 * np.hypot(40, 50) / 5 + 80 / 40 + 39 / 40)
 
 
 def test_odd_values_by_hand() -> None:
@@ -84,17 +90,22 @@ def test_odd_values_by_hand() -> None:
         workload=[10, 15, 20, 700],
         robot_xy=[[0, 0], [0, 0], [0, 0]],
         capacity=[1, 10, 10.5],
-        speed=[1, 3, 40],
+        speed=[1, 3, 60],
     )
     scales = Scales.of(many)
-    # Capacities up to 10 times 10, the median; speeds up to 10 times 3. 700 are done in 700/10.5 = 66.7 <= 90, so W is
-    # 4 times the median of 10, 15, 20, 700, the lower one of two.
+    # 60 is more than 10 times 3, and crosses the frame 60 · 90/100 = 54 times until 90: enough. And 10 is not more than
+    # 10 times 1. 700 are done in 700/10.5 = 66.7 <= 90, so W is 4 times the median of 10, 15, 20, 700, the lower one.
     assert (scales.capacity, scales.speed, scales.work) == (10.5, 3, 60)
     # 1000/10.5 = 95.2 > 90: nobody can do it, so it does not count.
     assert Scales.of(replace(many, workload=[10, 15, 20, 1000])).work == 20
-    # A robot that can do nothing in time does not count: 10/0.1 > 90, and for the others 10 is no more than 10 times 2.
-    weak = replace(many, capacity=[0.1, 2, 10])
-    assert Scales.of(weak).capacity == 10
+    assert Scales.of(replace(many, speed=[1, 3, 50])).speed == 50  # 45 times are not enough
+    # 1000 do 60 in 0.06, a 555th of the 33.3 that a crossing takes: more than enough. 200 are, too, beside 10.
+    assert Scales.of(replace(many, capacity=[1, 10, 1000])).capacity == 10
+    assert Scales.of(replace(many, capacity=[15, 150, 1000])).capacity == 1000
+    # The weak do not make the strong odd, however many and weak they are.
+    assert Scales.of(replace(many, capacity=[0.2, 0.2, 5])).capacity == 5
+    # A robot that can do nothing in time does not count.
+    assert Scales.of(replace(many, capacity=[1, 5, 5], robot_xy=[[0, 0]] * 3, speed=[1, 3, 1e-3])).speed == 3
 
 
 def test_ordinary_missions_have_the_largest_of_everything_as_scales() -> None:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from mrta_zoo import Scenario
+from mrta_zoo.scales import frame_of
 from mrta_zoo.view import shown_box, shown_time
 
 SCENARIO = Scenario(
@@ -37,4 +39,6 @@ def test_until_when() -> None:
     assert shown_time(SCENARIO, 40) == 80
     assert shown_time(SCENARIO, 0) == 90
     lasting = replace(SCENARIO, deadline=[20, 38, 1e9])
-    assert shown_time(lasting, 0) == pytest.approx(38 + 100 * 2**0.5 + 5)  # across the map, and its work
+    # From 38 on, across the frame, and its work.
+    across = float(np.hypot(*frame_of(lasting)[1]))
+    assert shown_time(lasting, 0) == pytest.approx(38 + across + 5)

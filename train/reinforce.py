@@ -154,7 +154,7 @@ class Reinforce:
         if self._validation is None:
             rng = np.random.default_rng((self.config.seed, VALIDATION))
             drawn = [self._draw(rng) for _ in range(self.config.validation_scenarios)]
-            self._validation = ScenarioBatch.of(drawn, self.device)
+            self._validation = ScenarioBatch.of(drawn, self.device, mask_rule=self.config.mask_rule)
         return self._validation
 
     @property

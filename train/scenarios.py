@@ -37,7 +37,9 @@ def draw(config: TrainConfig, generator: ScenarioGenerator | None, update: int) 
     else:
         most_robots = None
     scenarios = ScenarioBatch.of(
-        [draw_scenario(generator, rng) for _ in range(config.scenarios)], max_robots=most_robots
+        [draw_scenario(generator, rng) for _ in range(config.scenarios)],
+        max_robots=most_robots,
+        mask_rule=config.mask_rule,
     )
     return Drawn(scenarios, int(rng.integers(2**63)))
 

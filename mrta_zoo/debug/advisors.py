@@ -118,7 +118,7 @@ class PolicyAdvisor(Advisor):
         """
         scenario, robot = mission.scenario, mission.actor
         if scenario not in self._observers:
-            self._observers = {scenario: Observer(scenario, scenario.num_tasks, scenario.num_robots)}
+            self._observers = {scenario: Observer(scenario, scenario.num_tasks, scenario.num_robots, mission.mask_rule)}
         observation = self._observers[scenario].observe(mission, robot)
         policy, agent = _fork(state), f"robot_{robot}"
         if not isinstance(policy, Probabilistic):

@@ -162,7 +162,7 @@ def test_some_scenarios_gain_by_every_search() -> None:
 
 def test_the_eight_symmetries_of_a_place_by_hand() -> None:
     # On a map of 100 × 50, in lengths of 100: (0.3, 0.1) is 0.7 from the right and 0.4 from the top.
-    wide = replace(BOTH_WAYS, task_xy=[[100, 0], [0, 50], [30, 0]], map_size=(100.0, 50.0))
+    wide = replace(BOTH_WAYS, task_xy=[[100, 0], [0, 50], [30, 0]], deadline=[99, 99, 99], map_size=(100.0, 50.0))
     view = View.of(ScenarioBatch.of([wide]).repeat(SYMMETRIES))
     seen = view.of_places(torch.tensor([0.3, 0.1]).expand(8, 1, 2))[:, 0]
     expected = [[0.3, 0.1], [0.7, 0.1], [0.3, 0.4], [0.7, 0.4], [0.1, 0.3], [0.1, 0.7], [0.4, 0.3], [0.4, 0.7]]

@@ -136,7 +136,7 @@ def test_a_policy_has_the_form_of_observation_that_it_asks_for() -> None:
 def test_plans_agree_with_a_loop_on_the_bare_mission(rule: str) -> None:
     for scenario in seeded_scenarios(5, 60):
         mission = Mission(scenario, rule)  # type: ignore[arg-type]
-        observer = Observer(scenario, scenario.num_tasks, scenario.num_robots)
+        observer = Observer(scenario, scenario.num_tasks, scenario.num_robots, rule)  # type: ignore[arg-type]
         while not mission.done:
             mission.assign(NearestPolicy().act(observer.observe(mission, mission.actor)))
         plan = run_in_environment(NearestPolicy(), scenario, rule, "nearest")  # type: ignore[arg-type]
