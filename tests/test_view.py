@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from mrta_zoo import Scenario
-from mrta_zoo.scales import frame_of
 from mrta_zoo.view import shown_box, shown_time
 
 SCENARIO = Scenario(
@@ -39,6 +37,5 @@ def test_until_when() -> None:
     assert shown_time(SCENARIO, 40) == 80
     assert shown_time(SCENARIO, 0) == 90
     lasting = replace(SCENARIO, deadline=[20, 38, 1e9])
-    # From 38 on, across the frame, and its work.
-    across = float(np.hypot(*frame_of(lasting)[1]))
-    assert shown_time(lasting, 0) == pytest.approx(38 + across + 5)
+    # From 20 on, the two robots could do one task each: across the map, and half of all work and of the heaviest.
+    assert shown_time(lasting, 0) == pytest.approx(20 + 100 * 2**0.5 + 10 / 2 + 5 / 2)
