@@ -67,10 +67,10 @@ class Scales:
         """
         possible = in_time(scenario) if mask_rule == "feasible" else np.ones((scenario.num_robots, 1), dtype=np.bool_)
         origin, extent = frame_of(scenario, possible)
-        useful = possible.any(axis=1) if possible.any() else np.ones(scenario.num_robots, dtype=np.bool_)
+        useful = useful_robots(possible)
         capacities, speeds, length = scenario.capacity[useful], scenario.speed[useful], float(extent.max())
-        time = slack_time(scenario, extent, useful)
         work = work_scale(scenario, float(capacities.max()))
+        time = slack_time(scenario, extent, useful, np.minimum(scenario.workload, work))
         speed = usual(speeds, ENOUGH * length / time)
         return cls(
             origin=origin,
@@ -131,7 +131,13 @@ def in_time(scenario: Scenario) -> BoolArray:
     return np.asarray(may_choose("feasible", finish, 0.0, scenario.deadline))
 
 
-def slack_time(scenario: Scenario, extent: FloatArray, useful: BoolArray) -> float:
+def useful_robots(possible: BoolArray) -> BoolArray:
+    """(M,) those that can do anything, by (M, …) what each can do; all of them, if none can."""
+    useful = possible.any(axis=1)
+    return np.asarray(useful | ~useful.any())
+
+
+def slack_time(scenario: Scenario, extent: FloatArray, useful: BoolArray, work: FloatArray) -> float:
     """T: the latest deadline or, if earlier, the time by which all that can wait could be done: none binds later.
 
     Say that some tasks have a deadline by d, and k others later ones. By d, the former are done or missed, and every
@@ -145,17 +151,18 @@ def slack_time(scenario: Scenario, extent: FloatArray, useful: BoolArray) -> flo
         scenario: the mission.
         extent: (2,) width and height of its frame.
         useful: (M,) the robots that can do anything; at least one.
+        work: (N,) workloads, of which those that are far too heavy may be taken for less.
     """
     across, side = float(np.hypot(*extent)), float(extent.max())
     speed, capacity = scenario.speed[useful], scenario.capacity[useful]
-    alone = across * scenario.num_tasks / speed + scenario.workload.sum() / capacity
+    alone = across * scenario.num_tasks / speed + work.sum() / capacity
     better = np.argsort(alone, kind="stable")[: len(alone) // 2 + 1]
     speed, capacity, robots = speed[better].min(), capacity[better].min(), len(better)
     order = np.argsort(scenario.deadline, kind="stable")
     later = scenario.num_tasks - 1 - np.arange(scenario.num_tasks)
     each = -(-later // robots)
     way = np.minimum(each * across, (np.sqrt(2.0 * each) + 1.75) * side + across) * (each > 0)
-    work = scenario.workload[order]
+    work = work[order]
     # Of the tasks that come later in this order: what they take together, and the most that one takes.
     total = np.cumsum(work[::-1])[::-1] - work
     heaviest = np.append(np.maximum.accumulate(work[:0:-1])[::-1], 0.0)

@@ -18,12 +18,14 @@ from mrta_zoo.plan import Plan
 from mrta_zoo.policies.exact.task_sets import IntArray, within_reach
 from mrta_zoo.policies.on_time import Routes, on_time
 from mrta_zoo.rules import travel_time
-from mrta_zoo.scales import Scales
+from mrta_zoo.scales import frame_of, in_time, slack_time, useful_robots
 from mrta_zoo.scenario import Scenario
 
 BUDGET = 5.0
 RESOLUTION = 10**7
-"""Model time units until the latest deadline that can bind, see `mrta_zoo.scales.slack_time`."""
+"""Model time units until the latest deadline, or until the time beyond which none counts."""
+LATEST = 4.0
+"""Deadlines count up to so many times `mrta_zoo.scales.slack_time`, beyond which they cannot bind."""
 WARPS = (2e-5, 2e-6, 2e-4)
 """What a model time unit of lateness costs at most during the search, in prizes. A search starts at half of it and
 adapts it, so that it passes through plans that are late, but finds some that are not. The first value is the best for
@@ -44,8 +46,8 @@ class PyVrpSolver:
     as many tasks apart, and finds far more tasks with it. The prize is larger than all that robots can travel in
     time, so that one more task is always worth it.
 
-    No task is planned to end later than at the time by which all that can wait could be done at leisure: that costs
-    no task, and leaves the durations their digits where one deadline is far beyond all others.
+    No task is planned to end later than at `LATEST` times the time by which all that can wait could be done: that
+    costs no task, and leaves the durations their digits where one deadline is far beyond all others.
 
     PyVRP counts in integers. Durations are rounded down and deadlines up, so that what is in time in floating-point
     arithmetic is in time there, also where a deadline is met exactly. What only the model finds in time is dropped
@@ -121,7 +123,9 @@ def _model(scenario: Scenario, tasks: IntArray, prize: int) -> Any:
 
     end = scenario.num_robots
     places = np.concatenate([scenario.robot_xy, np.zeros((1, 2)), scenario.task_xy[tasks]])
-    latest = Scales.of(scenario).time
+    possible = in_time(scenario)
+    slack = slack_time(scenario, frame_of(scenario, possible)[1], useful_robots(possible), scenario.workload)
+    latest = min(float(scenario.deadline.max()), LATEST * slack)
     kinds: dict[tuple[float, float], int] = {}
     travels: list[Any] = []
     durations: list[Any] = []
