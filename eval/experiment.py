@@ -72,19 +72,13 @@ def open_experiment(folder: Path, manifest: Manifest) -> None:
     """
     path = folder / MANIFEST
     try:
-        if os.path.exists(folder) and not os.path.isdir(folder):
-            raise ConfigError(f"{folder} is a file; expected a folder, new, empty, or of this command")
+        _check_ours(folder)
+        make_folder(folder)
+        _LOCKS.append(lock_folder(folder))
         if not os.path.lexists(path):
-            if os.path.isdir(folder) and any(not name.startswith(".") for name in os.listdir(folder)):
-                raise ConfigError(
-                    f"{folder} is not empty and holds no {MANIFEST}; expected a folder that is new, empty, or of "
-                    "this command"
-                )
-            make_folder(folder)
-            _LOCKS.append(lock_folder(folder))
+            _check_ours(folder)
             write_text(json.dumps(asdict(manifest), indent=2, ensure_ascii=False) + "\n", path, ConfigError)
             return
-        _LOCKS.append(lock_folder(folder))
         text = composed(read_text(path, ConfigError, "what this command has written"))
         earlier = msgspec.json.decode(text, type=Manifest)
     except OSError as error:
@@ -95,6 +89,17 @@ def open_experiment(folder: Path, manifest: Manifest) -> None:
         raise ConfigError(
             f"{folder} holds results of another run: {difference}; expected the same command on the same cases, or a "
             "new folder"
+        )
+
+
+def _check_ours(folder: Path) -> None:
+    if os.path.exists(folder) and not os.path.isdir(folder):
+        raise ConfigError(f"{folder} is a file; expected a folder, new, empty, or of this command")
+    if os.path.lexists(folder / MANIFEST) or not os.path.isdir(folder):
+        return
+    if any(not name.startswith(".") for name in os.listdir(folder)):
+        raise ConfigError(
+            f"{folder} is not empty and holds no {MANIFEST}; expected a folder that is new, empty, or of this command"
         )
 
 

@@ -24,6 +24,7 @@ from typing import Any
 import torch
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.io.records import write_records
 from mrta_zoo.io.source import check_name
 from mrta_zoo.paths import make_folder
@@ -58,18 +59,25 @@ def start(folder: Path, config: TrainConfig, options: RunOptions | None = None) 
     """Begin a run in a new or empty folder.
 
     Raises:
-        ConfigError: if the folder already holds a run, can't be written, or has a name that no policy can have.
+        ConfigError: if the folder already holds a run, another process is using it, it can't be written, or it has a
+            name that no policy can have.
     """
-    if os.path.lexists(folder / "config.json") or _entries(folder / "checkpoints"):
-        raise ConfigError(f"{folder} already holds a run; go on with it (--resume), or choose another folder")
+    _check_new(folder)
     check_name(folder.name, str(folder), "the policy's name", ConfigError)  # what plans will be signed with
     run = Reinforce(config, options=options)  # before anything is written: it may refuse the configuration
     try:
         make_folder(folder)
-        write_json(folder / "config.json", config)
+        with lock_folder(folder):
+            _check_new(folder)  # another process may have begun one meanwhile
+            write_json(folder / "config.json", config)
     except OSError as error:
         raise ConfigError(f"{folder}: can't write a run there ({error.strerror})") from None
     return run
+
+
+def _check_new(folder: Path) -> None:
+    if os.path.lexists(folder / "config.json") or _entries(folder / "checkpoints"):
+        raise ConfigError(f"{folder} already holds a run; go on with it (--resume), or choose another folder")
 
 
 def resume(folder: Path, options: RunOptions | None = None) -> tuple[Reinforce, float]:

@@ -98,20 +98,13 @@ def _run(command: TrainCommand) -> None:
                 f"{command.out} holds a run of mrta_zoo.train.bare, which goes on there (--resume); to train on from "
                 f"its policy, begin a new run: --initial {command.out}, another --out, and no --resume"
             )
-        run, seconds = checkpoint.resume(command.out, options)
-        changed = [
-            f.name for f in fields(TrainConfig) if getattr(command.config, f.name) != getattr(run.config, f.name)
-        ]
-        if changed:
-            raise ConfigError(
-                f"--resume keeps the run's configuration; {changed[0]} is {getattr(run.config, changed[0])} in "
-                f"{command.out}, not {getattr(command.config, changed[0])}; to train on otherwise, begin a new "
-                f"run from its weights: --initial {command.out}, another --out, and no --resume"
-            )
+        _check_kept(command)
     else:
         run, seconds = checkpoint.start(command.out, command.config, options), 0.0
     lock = lock_folder(command.out)
     try:
+        if command.resume:  # under the lock: what another process is still writing would be read half old
+            run, seconds = checkpoint.resume(command.out, options)
         if run.imitates:
             run.set_plans(make_plans(run.config, command.out / "plans", command.workers))
         if command.prepare:
@@ -123,6 +116,18 @@ def _run(command: TrainCommand) -> None:
         raise
     finally:
         lock.release()
+
+
+def _check_kept(command: TrainCommand) -> None:
+    """Raises `ConfigError` if a run that is to be resumed is not there, or was told otherwise."""
+    kept = checkpoint.saved_config(command.out)
+    changed = [f.name for f in fields(TrainConfig) if getattr(command.config, f.name) != getattr(kept, f.name)]
+    if changed:
+        raise ConfigError(
+            f"--resume keeps the run's configuration; {changed[0]} is {getattr(kept, changed[0])} in "
+            f"{command.out}, not {getattr(command.config, changed[0])}; to train on otherwise, begin a new "
+            f"run from its weights: --initial {command.out}, another --out, and no --resume"
+        )
 
 
 def parse(argv: Sequence[str]) -> TrainCommand:
