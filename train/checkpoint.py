@@ -155,8 +155,10 @@ def _save(folder: Path, run: Reinforce, seconds: float) -> None:
     if baseline := run.baseline.state():
         write_tensors(partial / "baseline.safetensors", baseline)
     write_json(partial / "state.json", RunState(run.update, round(seconds, 1), run.history))
+    if not os.path.lexists(folder / "config.json"):  # the folder has gone, and is a new one
+        write_json(folder / "config.json", run.config)
     # Before the checkpoint counts: a run killed in between validates again and writes the same policy.
-    if run.history[-1] is run.best:
+    if run.history[-1] is run.best or not os.path.lexists(folder / "policy.safetensors"):
         save_policy(folder / "policy.safetensors", run.network, policy_info(run, seconds))
     write_records(run.history, folder / "history.csv")
     shutil.rmtree(final, ignore_errors=True)

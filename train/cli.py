@@ -25,9 +25,14 @@ from mrta_zoo.policies.weights import save_policy
 from mrta_zoo.train import checkpoint
 from mrta_zoo.train.collect import BARE, collect
 from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.event_log import EventLog
 from mrta_zoo.train.plans import make_plans
 from mrta_zoo.train.presets import PRESETS
 from mrta_zoo.train.reinforce import Reinforce, RunOptions, Update
+
+
+CURVES = ("train/loss", "train/gradient_norm", "train/learning_rate", "train/episodes_per_second")
+"""What TensorBoard shows of updates."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -158,8 +163,6 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
         seconds: time already spent on it.
         console: where to show progress; standard error by default.
     """
-    from torch.utils.tensorboard import SummaryWriter
-
     console = console or messages_console()
     config = run.config
     parameters = sum(parameter.numel() for parameter in run.network.parameters())
@@ -185,7 +188,7 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
     )
     with (
         # What an earlier session has shown beyond its last checkpoint comes again.
-        SummaryWriter(str(folder / "tensorboard"), purge_step=first + 1 if run.history else 0) as board,
+        EventLog(folder / "tensorboard", first + 1 if run.history else 0, lambda why: say(console, why)) as board,
         Progress(*fitting(columns, console), console=console, disable=not console.is_terminal) as progress,
     ):
         bar = progress.add_task("", total=config.total_updates, completed=first, rate=0.0, completion="-")
@@ -195,17 +198,12 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
             if isinstance(event, Update):
                 rate = (event.update - first) * per_update / (now - session)
                 progress.update(bar, completed=event.update, rate=rate)
-                board.add_scalar("train/loss", event.loss, event.update)
-                board.add_scalar("train/gradient_norm", event.gradient_norm, event.update)
-                board.add_scalar("train/learning_rate", event.learning_rate, event.update)
-                board.add_scalar("train/episodes_per_second", rate, event.update)
+                values = (event.loss, event.gradient_norm, event.learning_rate, rate)
+                board.add(event.update, dict(zip(CURVES, values, strict=True)))
                 continue
-            try:
-                board.add_scalar("validation/completion", event.completion, event.update)
-                board.add_scalar("validation/cost", event.cost, event.update)
-                board.flush()  # before the checkpoint, after which they do not come again
-            finally:
-                _save(folder, run, now - begun)
+            board.add(event.update, {"validation/completion": event.completion, "validation/cost": event.cost})
+            board.flush()  # before the checkpoint, after which they do not come again
+            _save(folder, run, now - begun)
             shown = f"{100 * event.completion:.2f} %"
             progress.update(bar, completion=shown)
             note = "  (baseline replaced)" if event.baseline_replaced else ""
