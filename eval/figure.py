@@ -19,7 +19,7 @@ try:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.text import Text
-except ImportError:
+except Exception:  # it is not there, or broken
     require("plot", "a picture")
     raise
 

@@ -63,7 +63,7 @@ def _replay(argv: list[str]) -> None:
 
 
 def _train(argv: list[str]) -> None:
-    require("torch", "training")
+    require("torch", "training", ("scipy", "filelock"))
     from mrta_zoo.train.cli import train_command
 
     train_command(argv)
