@@ -104,6 +104,20 @@ def test_malformed_rows_are_refused(tmp_path: Path, line: str | None, sentence: 
         RowsFile(path, Row)
 
 
+@pytest.mark.parametrize("at", [0, 3, 10])
+def test_empty_columns_of_a_spreadsheet_are_passed_over(tmp_path: Path, at: int) -> None:
+    path = tmp_path / "rows.csv"
+    RowsFile(path, Row).append(replace(ROW, case="a", method="m"))
+    lines = [line.split(",") for line in path.read_text().splitlines()]
+    path.write_text("".join(",".join([*line[:at], "", *line[at:]]) + "\n" for line in lines) + ",,,,\n")
+    file = RowsFile(path, Row)
+    file.append(replace(ROW, case="b", method="m"))
+    assert [row.case for row in RowsFile(path, Row).rows] == ["a", "b"]
+    path.write_text("".join(",".join([*line[:at], "7", *line[at:]]) + "\n" for line in lines))
+    with pytest.raises(ConfigError, match="line 1: the columns are"):
+        RowsFile(path, Row)
+
+
 def test_an_interruption_costs_one_case(tmp_path: Path) -> None:
     path = tmp_path / "rows.csv"
     first = Breaks(after=2)

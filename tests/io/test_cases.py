@@ -147,6 +147,16 @@ def test_accents_may_be_written_in_two_ways(tmp_path: Path, file: str, row: str)
         read_cases(tmp_path)
 
 
+@pytest.mark.parametrize(
+    "text",
+    [",case,tasks,robots,m\n,c,3,1,1\n", "case,tasks,,robots,m\nc,3,,1,1\n", "case,tasks,robots,m,,\nc,3,1,1,,,,\n"],
+)
+def test_empty_columns_of_a_reference_are_passed_over(tmp_path: Path, text: str) -> None:
+    write_scenario(scenario("c"), tmp_path / "c.csv")
+    (tmp_path / "reference.csv").write_text(text)
+    assert [dict(case.reference) for case in read_cases(tmp_path)] == [{"m": 1}]
+
+
 def test_rows_that_match_no_case_are_told(folder: Path) -> None:
     def told(*names: str) -> list[str]:
         sentences: list[str] = []
