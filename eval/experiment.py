@@ -195,7 +195,9 @@ def digest_of_cases(cases: Iterable[Case]) -> str:
     digest = hashlib.sha256()
     for case in cases:
         scenario = case.scenario
-        digest.update(json.dumps([composed(case.name), scenario.num_tasks, scenario.num_robots, case.best_known]).encode())
+        digest.update(
+            json.dumps([composed(case.name), scenario.num_tasks, scenario.num_robots, case.best_known]).encode()
+        )
         for array in (
             scenario.task_xy, scenario.deadline, scenario.workload,
             scenario.robot_xy, scenario.capacity, scenario.speed, np.array(scenario.map_size),

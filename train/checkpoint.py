@@ -27,7 +27,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.io.records import write_records
 from mrta_zoo.io.source import check_name
-from mrta_zoo.paths import make_folder
+from mrta_zoo.paths import check_no_url, make_folder
 from mrta_zoo.policies.weights import (
     PolicyInfo,
     load_state,
@@ -62,6 +62,7 @@ def start(folder: Path, config: TrainConfig, options: RunOptions | None = None) 
         ConfigError: if the folder already holds a run, another process is using it, it can't be written, or it has a
             name that no policy can have.
     """
+    check_no_url(folder, ConfigError)
     _check_new(folder)
     check_name(folder.name, str(folder), "the policy's name", ConfigError)  # what plans will be signed with
     run = Reinforce(config, options=options)  # before anything is written: it may refuse the configuration
@@ -116,7 +117,8 @@ def saved_config(folder: Path) -> TrainConfig:
     Raises:
         ConfigError: if there is no run.
     """
-    if not (folder / "config.json").exists():
+    check_no_url(folder, ConfigError)
+    if not os.path.exists(folder / "config.json"):
         raise ConfigError(f"{folder} holds no run to resume: there is no config.json")
     return read_json(folder / "config.json", TrainConfig)
 

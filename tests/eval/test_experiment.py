@@ -188,7 +188,9 @@ def test_accents_may_be_written_in_two_ways(tmp_path: Path) -> None:
     for spelt in (two, one, two):
         case = replace(CASES[0], name=spelt)
         cases = digest_of_cases([case])
-        open_experiment(tmp_path / "out", Manifest(command="c", settings={"m": [spelt]}, cases=cases, weights={spelt: ""}))
+        open_experiment(
+            tmp_path / "out", Manifest(command="c", settings={"m": [spelt]}, cases=cases, weights={spelt: ""})
+        )
         file = RowsFile(tmp_path / "out" / "rows.csv", Row)
         measure([case], {spelt: make_solver("nearest")}, file, row_of, known)
         assert len(file.rows) == 1

@@ -78,7 +78,10 @@ def test_what_is_broken_counts_as_missing(names: set[str], method: str, broken: 
         ("solve m.csv --method edf+polish", "method 'edf+polish' needs numba, which is installed here but"),
         ("solve m.csv --method pyvrp", "needs pyvrp, which is installed here but cannot be imported (ImportError)"),
         ("solve m.csv --method capam", "imported (libcudart.so.12: cannot open shared object file); install what fits"),
-        ("eval --cases builtin --methods nearest,capam", "method 'capam' needs torch, which is installed here but cannot be imported"),
+        (
+            "eval --cases builtin --methods nearest,capam",
+            "method 'capam' needs torch, which is installed here but cannot be imported",
+        ),
         ("train --preset smoke --out x", "training needs torch, which is installed here but cannot be imported"),
         ("reproduce --out x", "the report needs matplotlib, which is installed here but cannot be imported (numpy"),
     ],

@@ -114,9 +114,7 @@ def test_a_run_begun_at_the_same_time_is_let_be(
     assert (tmp_path / "config.json").read_text() == "theirs"
 
 
-def test_a_run_is_resumed_from_what_another_process_left_last(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_run_is_resumed_from_what_another_process_left_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     checkpoint.start(tmp_path, TINY)
     held = []
 
