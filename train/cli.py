@@ -30,7 +30,6 @@ from mrta_zoo.train.plans import make_plans
 from mrta_zoo.train.presets import PRESETS
 from mrta_zoo.train.reinforce import Reinforce, RunOptions, Update
 
-
 CURVES = ("train/loss", "train/gradient_norm", "train/learning_rate", "train/episodes_per_second")
 """What TensorBoard shows of updates."""
 

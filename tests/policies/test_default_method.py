@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -45,7 +44,7 @@ BROKEN = {
 
 
 @pytest.fixture
-def broken(monkeypatch: pytest.MonkeyPatch) -> Iterator[set[str]]:
+def broken(monkeypatch: pytest.MonkeyPatch) -> set[str]:
     """Modules that are installed, but cannot be imported: their names go in here."""
     names: set[str] = set()
 
@@ -55,7 +54,7 @@ def broken(monkeypatch: pytest.MonkeyPatch) -> Iterator[set[str]]:
         return import_module(name)
 
     monkeypatch.setattr(extras, "import_module", import_broken)
-    yield names
+    return names
 
 
 @pytest.mark.parametrize(
