@@ -81,9 +81,9 @@ def converge_command(argv: Sequence[str]) -> None:
     plan: list[tuple[float | None, dict[str, Solver]]] = [
         (None, {composed(name): make_solver(name, seed=command.seed) for name in points})
     ]
-    for budget in budgets:
-        options: dict[str, Any] = {"seed": command.seed, "budget": budget, "threads": command.threads}
-        plan.append((budget, {composed(name): make_solver(name, **options) for name in methods}))
+    for seconds in budgets:
+        options: dict[str, Any] = {"seed": command.seed, "budget": seconds, "threads": command.threads}
+        plan.append((seconds, {composed(name): make_solver(name, **options) for name in methods}))
     settings = {"cases": shown_cases(command.cases), "methods": methods, "points": points, "budgets": budgets,
                 "every": command.every, "seed": command.seed, "threads": command.threads}  # fmt: skip
     manifest = make_manifest("converge", settings, cases, dict.fromkeys((*methods, *points)))
@@ -95,8 +95,8 @@ def converge_command(argv: Sequence[str]) -> None:
             sessions.append(this_session(command.threads))
         for budget, solvers in plan:
             _measure(cases, solvers, rows, budget)
-    order = [(composed(name), None) for name in points]
-    order += [(composed(name), budget) for name in methods for budget in budgets]
+    order: list[tuple[str, float | None]] = [(composed(name), None) for name in points]
+    order += [(composed(name), seconds) for name in methods for seconds in budgets]
     curves = curves_of(rows.rows, order, command.seed)
     text = curves.to_csv(index=False, lineterminator="\n")
     with Outputs() as outputs:
