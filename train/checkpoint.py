@@ -68,9 +68,12 @@ def start(folder: Path, config: TrainConfig, options: RunOptions | None = None) 
     run = Reinforce(config, options=options)  # before anything is written: it may refuse the configuration
     try:
         make_folder(folder)
-        with lock_folder(folder):
+        lock = lock_folder(folder)
+        try:
             _check_new(folder)  # another process may have begun one meanwhile
             write_json(folder / "config.json", config)
+        finally:
+            lock.release()
     except OSError as error:
         raise ConfigError(f"{folder}: can't write a run there ({error.strerror})") from None
     return run

@@ -19,6 +19,7 @@ from filelock import FileLock
 from torch import Tensor
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.neural import load_policy
 from mrta_zoo.policies.weights import read_tensors, write_tensors
@@ -112,6 +113,13 @@ def test_a_run_begun_at_the_same_time_is_let_be(
         train_command(["--preset", "smoke", "--out", str(tmp_path)])
     theirs.release()
     assert (tmp_path / "config.json").read_text() == "theirs"
+
+
+def test_a_folder_is_free_once_a_run_is_begun_there(tmp_path: Path) -> None:
+    lock = lock_folder(tmp_path)  # the same object, which would still be locked
+    lock.release()
+    checkpoint.start(tmp_path, TINY)
+    assert not lock.is_locked
 
 
 def test_a_run_is_resumed_from_what_another_process_left_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
