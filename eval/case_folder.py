@@ -11,6 +11,7 @@ from typing import Literal, get_args
 
 from mrta_zoo.errors import ConfigError, ScenarioError
 from mrta_zoo.io import write_scenario, write_taptc
+from mrta_zoo.paths import check_no_url
 from mrta_zoo.scenario import Scenario
 
 CaseFormat = Literal["taptc", "json", "csv"]
@@ -33,6 +34,7 @@ def write_case_folder(scenarios: Iterable[Scenario], folder: Path, file_format: 
     """
     if file_format not in get_args(CaseFormat):
         raise ConfigError(f"format is {file_format!r}; expected one of {', '.join(get_args(CaseFormat))}")
+    check_no_url(folder, ConfigError)
     try:
         if folder.is_dir() and any(folder.iterdir()):
             raise ConfigError(f"{folder} is not empty; expected a new or empty folder")

@@ -21,12 +21,11 @@ from mrta_zoo.eval.commands import TRAINED_HELP, PlanningFlags, agent_file, poli
 from mrta_zoo.eval.console import preparing, results_console, say
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
-from mrta_zoo.eval.plan_files import read_any_plan
+from mrta_zoo.eval.plan_files import is_episode, read_any_plan
 from mrta_zoo.eval.sheet import Sheet
 from mrta_zoo.io import read_scenario
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.strict_json import write_document
-from mrta_zoo.paths import suffix_of
 from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.policies.registry import method_names
 from mrta_zoo.scenario import Scenario
@@ -80,7 +79,7 @@ def compare_command(argv: Sequence[str]) -> None:
         raise ConfigError(f"rows is {command.rows}; expected a whole number >= 1")
     if command.out:
         check_destination(command.out)
-        files = {name: Path(name) for name in both if suffix_of(name) == ".json"}
+        files = {name: Path(name) for name in both if is_episode(name)}
         for name in both:
             files |= policy_files(name)
         read = {"the scenario": command.scenario, "the agent file": agent_file(command.scenario, command.agents)}

@@ -47,7 +47,7 @@ def run_demo(folder: Path, policy_name: str = "capam-plus") -> None:
         MrtaError: if the folder cannot be made, there is no such policy, or something is not installed.
     """
     begun = time.perf_counter()
-    require("torch", "the demo")
+    require("torch", "the demo", ("scipy", "filelock"))
     policy = load_learned(policy_name)
     _make(folder)
     console = results_console()

@@ -72,29 +72,40 @@ def open_experiment(folder: Path, manifest: Manifest) -> None:
     """
     path = folder / MANIFEST
     try:
-        if os.path.exists(folder) and not os.path.isdir(folder):
-            raise ConfigError(f"{folder} is a file; expected a folder, new, empty, or of this command")
-        if not os.path.lexists(path):
-            if os.path.isdir(folder) and any(not name.startswith(".") for name in os.listdir(folder)):
-                raise ConfigError(
-                    f"{folder} is not empty and holds no {MANIFEST}; expected a folder that is new, empty, or of "
-                    "this command"
-                )
-            make_folder(folder)
-            _LOCKS.append(lock_folder(folder))
-            write_text(json.dumps(asdict(manifest), indent=2, ensure_ascii=False) + "\n", path, ConfigError)
-            return
+        _check_ours(folder)
+        make_folder(folder)
         _LOCKS.append(lock_folder(folder))
+        if not os.path.lexists(path):
+            _check_ours(folder)
+            write_text(_text(manifest), path, ConfigError)
+            return
         text = composed(read_text(path, ConfigError, "what this command has written"))
         earlier = msgspec.json.decode(text, type=Manifest)
     except OSError as error:
         raise ConfigError(f"{folder} cannot be used: {(error.strerror or str(error)).lower()}") from None
     except msgspec.MsgspecError as error:
         raise ConfigError(f"{path}: {error}; expected what this command has written there") from None
-    if difference := _difference(earlier, manifest):
+    now = msgspec.json.decode(_text(manifest), type=Manifest)
+    if difference := _difference(earlier, now):
         raise ConfigError(
             f"{folder} holds results of another run: {difference}; expected the same command on the same cases, or a "
             "new folder"
+        )
+
+
+def _text(manifest: Manifest) -> str:
+    """What is written of a manifest: names are the same whichever way their accents are written."""
+    return composed(json.dumps(asdict(manifest), indent=2, ensure_ascii=False)) + "\n"
+
+
+def _check_ours(folder: Path) -> None:
+    if os.path.exists(folder) and not os.path.isdir(folder):
+        raise ConfigError(f"{folder} is a file; expected a folder, new, empty, or of this command")
+    if os.path.lexists(folder / MANIFEST) or not os.path.isdir(folder):
+        return
+    if any(not name.startswith(".") for name in os.listdir(folder)):
+        raise ConfigError(
+            f"{folder} is not empty and holds no {MANIFEST}; expected a folder that is new, empty, or of this command"
         )
 
 
@@ -153,12 +164,12 @@ def measure(
     Raises:
         MrtaError: if a method fails on a case, or the file has a row twice or one of another case or method.
     """
-    keys = [key for row in file.rows if (key := known(row)) is not None]
+    keys = [_key(*key) for row in file.rows if (key := known(row)) is not None]
     done = set(keys)
     if len(done) < len(keys):
         twice = next(key for index, key in enumerate(keys) if key in keys[:index])
         raise ConfigError(f"{file.path} has two rows for method {twice[1]} on case {twice[0]}; expected one")
-    strange = done - {(case.name, method) for case in cases for method in solvers}
+    strange = done - {_key(case.name, method) for case in cases for method in solvers}
     if strange:
         case_name, method = min(strange)
         raise ConfigError(
@@ -168,11 +179,15 @@ def measure(
     with progress_bar() as progress:
         bar = progress.add_task(what, total=len(cases) * len(solvers))
         for method, solver in solvers.items():
-            missing = [case for case in cases if (case.name, method) not in done]
+            missing = [case for case in cases if _key(case.name, method) not in done]
             progress.update(bar, advance=len(cases) - len(missing), description=f"{what}{method}")
             for case, solved in solve_cases(missing, method, solver):
                 file.append(record(case, method, solved))
                 progress.update(bar, advance=1)
+
+
+def _key(case: str, method: str) -> tuple[str, str]:
+    return composed(case), composed(method)
 
 
 def digest_of_cases(cases: Iterable[Case]) -> str:
@@ -180,12 +195,16 @@ def digest_of_cases(cases: Iterable[Case]) -> str:
     digest = hashlib.sha256()
     for case in cases:
         scenario = case.scenario
-        digest.update(json.dumps([case.name, scenario.num_tasks, scenario.num_robots, case.best_known]).encode())
+        digest.update(
+            json.dumps([composed(case.name), scenario.num_tasks, scenario.num_robots, case.best_known]).encode()
+        )
         for array in (
             scenario.task_xy, scenario.deadline, scenario.workload,
             scenario.robot_xy, scenario.capacity, scenario.speed, np.array(scenario.map_size),
         ):  # fmt: skip
             digest.update(array.astype("<f8").tobytes())
+        if any(scenario.map_origin):  # as digests of before, which know of none
+            digest.update(np.array(scenario.map_origin).astype("<f8").tobytes())
     return digest.hexdigest()
 
 

@@ -13,13 +13,13 @@ from typing import Any
 from mrta_zoo.atomic import replacing
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.extras import require
-from mrta_zoo.paths import suffix_of
+from mrta_zoo.paths import check_no_url, suffix_of
 
 try:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.text import Text
-except ImportError:
+except Exception:  # it is not there, or broken
     require("plot", "a picture")
     raise
 
@@ -62,12 +62,14 @@ def save_picture(figure: Figure, path: Path, **options: Any) -> None:
     Raises:
         ConfigError: if there is no such format here, or the file cannot be written.
     """
+    check_no_url(path, ConfigError)
     check_format(path)
     try:
         with replacing(path) as partial:
             figure.savefig(partial, format=_format_of(path), **options)
-    except OSError as error:
-        raise ConfigError(f"{path} cannot be written: {(error.strerror or str(error)).lower()}") from None
+    except (OSError, ValueError) as error:  # ValueError: a null character in the path
+        reason = getattr(error, "strerror", None) or str(error)
+        raise ConfigError(f"{path} cannot be written: {reason.lower()}") from None
 
 
 def _format_of(path: Path) -> str:

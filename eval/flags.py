@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 import tyro
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.paths import composed
 
 CommandClass = TypeVar("CommandClass")
 
@@ -50,7 +51,8 @@ def names(text: str, flag: str = "methods", what: str = "names", example: str = 
     found = [name.strip() for name in text.split(",") if name.strip()]
     if not found:
         raise ConfigError(f"{flag} is {text!r}; expected {what} separated by commas, such as {example}")
+    spelt = [composed(name) for name in found]
     for name in found:
-        if found.count(name) > 1:
+        if spelt.count(composed(name)) > 1:
             raise ConfigError(f"{flag.removesuffix('s')} {name} is named twice; expected each once")
     return found

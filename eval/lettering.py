@@ -18,7 +18,7 @@ from mrta_zoo.scenario import FloatArray
 try:
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import text_to_path
-except ImportError:
+except Exception:  # it is not there, or broken
     require("plot", "a picture")
     raise
 

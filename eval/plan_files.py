@@ -2,14 +2,27 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+from mrta_zoo.errors import PlanError
 from mrta_zoo.eval.console import warn
 from mrta_zoo.io import read_plan, read_trace
 from mrta_zoo.io.json_format import json_kind
 from mrta_zoo.paths import composed, suffix_of
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.trace import Trace
+from mrta_zoo.verify import verify
+
+PLAN, TRACE = "mrta_zoo.plan", "mrta_zoo.trace"
+
+
+def is_episode(name: str | Path) -> bool:
+    """Whether what is given in place of a method is a plan or a trace, which need not be there."""
+    return suffix_of(name) == ".json" and not os.path.isdir(name)
 
 
 def read_any_plan(path: Path, scenario: Scenario) -> Plan | None:
@@ -18,13 +31,35 @@ def read_any_plan(path: Path, scenario: Scenario) -> Plan | None:
     Says so on standard error if it bears the name of another scenario.
 
     Raises:
-        MrtaError: if it is malformed.
+        MrtaError: if it is malformed, or does not fit the scenario.
     """
-    if suffix_of(path) != ".json":
+    if not is_episode(path):
         return None
-    plan = read_trace(path).plan() if json_kind(path) == "mrta_zoo.trace" else read_plan(path)
-    check_name(path, plan, scenario)
+    with named(path):
+        episode = read_episode(path)
+        plan = episode.plan() if isinstance(episode, Trace) else episode
+        check_name(path, plan, scenario)
+        verify(scenario, plan)
     return plan
+
+
+def read_episode(path: Path) -> Plan | Trace:
+    """What a plan file or a trace holds.
+
+    Raises:
+        MrtaError: if it is missing or malformed.
+    """
+    return read_trace(path) if json_kind(path) == TRACE else read_plan(path)
+
+
+@contextmanager
+def named(path: Path) -> Iterator[None]:
+    """What is wrong with a plan meanwhile is told with the name of its file."""
+    try:
+        yield
+    except PlanError as error:
+        where = "" if str(error).startswith(str(path)) else f"{path}: "
+        raise PlanError(f"{where}{error}") from None
 
 
 def check_name(path: Path, plan: Plan, scenario: Scenario) -> None:

@@ -23,7 +23,7 @@ try:
     from matplotlib.lines import Line2D
     from matplotlib.patheffects import withStroke
     from matplotlib.ticker import MaxNLocator
-except ImportError:
+except Exception:  # it is not there, or broken
     require("plot", "a picture")
     raise
 

@@ -25,7 +25,7 @@ try:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
     from matplotlib.patheffects import withStroke
-except ImportError:
+except Exception:  # it is not there, or broken
     require("plot", "a picture")
     raise
 

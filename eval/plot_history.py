@@ -18,6 +18,7 @@ from mrta_zoo.errors import ConfigError, MrtaError
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.figure import LiteralFigure, check_format, save_picture
 from mrta_zoo.io.source import check_name, read_text
+from mrta_zoo.paths import as_spelt
 from mrta_zoo.render.style import plain
 
 
@@ -44,7 +45,7 @@ def read_history(path: Path) -> LearningCurve:
     Raises:
         ConfigError: if there is none, or it is malformed.
     """
-    file = path / "history.csv" if path.is_dir() else path
+    file = as_spelt(path / "history.csv") if path.is_dir() else path
     text = read_text(file, ConfigError, "a run's history.csv")
     name = path.absolute().name if path.is_dir() else path.stem
     check_name(name, str(path), "the run's name", ConfigError)

@@ -15,8 +15,8 @@ from mrta_zoo.eval.commands import METHOD_HELP, PlanningFlags, agent_file, polic
 from mrta_zoo.eval.console import preparing, results_console, say
 from mrta_zoo.eval.destination import check_destination, check_distinct
 from mrta_zoo.eval.flags import names, optional, parse
-from mrta_zoo.eval.plan_files import check_name
-from mrta_zoo.io import read_plan, read_scenario, read_trace
+from mrta_zoo.eval.plan_files import PLAN, TRACE, check_name, is_episode, named, read_episode
+from mrta_zoo.io import read_scenario, read_trace
 from mrta_zoo.io.json_format import json_kind
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.policies.cpu_threads import cpu_threads
@@ -25,7 +25,6 @@ from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import Trace
 
 DEFAULT = "capam-plus"
-PLAN, TRACE = "mrta_zoo.plan", "mrta_zoo.trace"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,7 +74,7 @@ def replay_command(argv: Sequence[str]) -> None:
     chosen = names(command.policy, "policy") if command.policy is not None else [DEFAULT]
     if command.policy is None and kind in (PLAN, TRACE):
         chosen = []
-    files = {f"the file {name}": Path(name) for name in chosen if json_kind(Path(name))}
+    files = {f"the file {name}": Path(name) for name in chosen if is_episode(name)}
     for name in chosen:
         files |= policy_files(name)
     inputs = {
@@ -114,7 +113,7 @@ def _source(command: Replay, kind: str) -> tuple[Scenario, list[Trace]]:
                 f"{command.source} is a plan, which does not hold its scenario; expected --scenario SCENARIO"
             )
         scenario = read_scenario(command.scenario, command.agents)
-        return scenario, [_of_plan(command.source, scenario, command.planning)]
+        return scenario, [_of_file(command.source, scenario, command.planning)]
     if command.scenario is not None:
         raise ConfigError(f"--scenario is given, and {command.source} is no plan; expected a plan, or no --scenario")
     return read_scenario(command.source, command.agents), []
@@ -122,15 +121,15 @@ def _source(command: Replay, kind: str) -> tuple[Scenario, list[Trace]]:
 
 def _episode(scenario: Scenario, name: str, planning: PlanningFlags) -> Trace:
     """What a method, or a file of it, makes of the scenario."""
-    kind = json_kind(Path(name))
-    if kind == TRACE:
-        return read_trace(name)
-    if kind == PLAN:
-        return _of_plan(Path(name), scenario, planning)
+    if is_episode(name):
+        return _of_file(Path(name), scenario, planning)
     return record(scenario, name, **asdict(planning))
 
 
-def _of_plan(path: Path, scenario: Scenario, planning: PlanningFlags) -> Trace:
-    plan = read_plan(path)
-    check_name(path, plan, scenario)
-    return Trace.of_plan(scenario, plan, planning.mask_rule)
+def _of_file(path: Path, scenario: Scenario, planning: PlanningFlags) -> Trace:
+    episode = read_episode(path)
+    if isinstance(episode, Trace):
+        return episode
+    check_name(path, episode, scenario)
+    with named(path):
+        return Trace.of_plan(scenario, episode, planning.mask_rule)

@@ -14,6 +14,7 @@ import msgspec
 from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.source import read_text, write_text
+from mrta_zoo.io.table import columns_in_use
 from mrta_zoo.paths import composed
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ class RowsFile(Generic[RowType]):
 
     Args:
         path: read if it exists, made with the first row if not. A last line without line end, which an interruption
-            has left, is dropped.
+            has left, is dropped; so are rows and columns with nothing in them, as spreadsheets leave them.
         of: the dataclass of the rows, of text, numbers, and numbers that may be None by default.
 
     Raises:
@@ -71,9 +72,10 @@ class RowsFile(Generic[RowType]):
         if not whole:
             return
         try:
-            header, *lines = csv.reader(io.StringIO(whole))
+            given = list(csv.reader(io.StringIO(whole)))
         except csv.Error as error:
             raise ConfigError(f"{self.path}: {error}; expected rows of this command") from None
+        header, *lines = rows = columns_in_use(given)
         if header != self._columns:
             raise ConfigError(f"{self.path}, line 1: the columns are {header}; expected {self._columns}")
         self._whole_header = True
@@ -81,6 +83,10 @@ class RowsFile(Generic[RowType]):
             if not any(cells):  # as spreadsheets leave them
                 continue
             self.rows.append(self._row(cells, f"{self.path}, line {number}"))
+        if len(header) != len(given[0]):  # empty columns, under which what is appended would not stand aright
+            stream = io.StringIO()
+            csv.writer(stream, lineterminator="\n").writerows(filter(any, rows))
+            write_text(stream.getvalue(), self.path, ConfigError)
 
     def _row(self, cells: list[str], where: str) -> RowType:
         if len(cells) != len(self._columns):

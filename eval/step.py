@@ -129,7 +129,7 @@ def hangups_raised() -> Iterator[None]:
 def _begin(command: Step) -> Session:
     """The session as the flags have it begin."""
     resumed: Trace | None = None
-    if command.session and os.path.exists(command.session):
+    if command.session and os.path.exists(command.session) and os.path.getsize(command.session):
         resumed = read_trace(command.session)
         if command.scenario is not None and _scenario(command) != resumed.scenario:
             raise ConfigError(

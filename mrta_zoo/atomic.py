@@ -8,6 +8,7 @@ import secrets
 import shutil
 import stat
 import tempfile
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from io import FileIO
@@ -15,6 +16,8 @@ from pathlib import Path
 
 _NOT_REPLACEABLE = (errno.EBUSY, errno.EXDEV, errno.EPERM, errno.EACCES, errno.EROFS)
 """What the system says where another file may not take a file's place, though the file itself may be written to."""
+
+_IN_PLACE = threading.Lock()  # whoever writes a file in place: two would mix what they write
 
 
 @contextmanager
@@ -39,6 +42,10 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
         yield target
         return
     partial = _new_partial(target)
+    if partial is None:
+        with _in_place(target):
+            yield target
+        return
     try:
         yield partial
         _put(partial, target)
@@ -72,8 +79,11 @@ def is_special(path: str | os.PathLike[str]) -> bool:
     return os.path.exists(path) and not os.path.isfile(path) and not os.path.isdir(path)
 
 
-def _new_partial(target: Path) -> Path:
-    """An empty file of a name that nobody else has, beside the target or, where that cannot be, for temporary files."""
+def _new_partial(target: Path) -> Path | None:
+    """An empty file of a name that nobody else has, beside the target or, where that cannot be, for temporary files.
+
+    None if there is no place for these either, as in a container that may write to the target alone.
+    """
     there = os.path.exists(target)
     mode = 0o600 if there else 0o666  # nobody may read what the file will hide; a new one is as the user wants new ones
     name = f".{secrets.token_hex(8)}.tmp"
@@ -83,8 +93,11 @@ def _new_partial(target: Path) -> Path:
     except OSError as error:
         if not there or error.errno not in _NOT_REPLACEABLE:
             raise
-        partial = Path(tempfile.gettempdir()) / name
-        os.close(os.open(partial, os.O_CREAT | os.O_EXCL | os.O_WRONLY, mode))
+        try:
+            partial = Path(tempfile.gettempdir()) / name
+            os.close(os.open(partial, os.O_CREAT | os.O_EXCL | os.O_WRONLY, mode))
+        except OSError:
+            return None
     return partial
 
 
@@ -100,7 +113,9 @@ def _put(partial: Path, target: Path) -> None:
         except OSError as error:
             if error.errno not in _NOT_REPLACEABLE:
                 raise
-    _write_over(target, partial.read_bytes())
+    data = partial.read_bytes()
+    with _in_place(target) as file:
+        _fill(file, data)
 
 
 def _make_alike(partial: Path, target: Path) -> bool:
@@ -121,12 +136,17 @@ def _make_alike(partial: Path, target: Path) -> bool:
     return True
 
 
-def _write_over(target: Path, data: bytes) -> None:
-    """Write in place; on failure what was there is put back."""
-    with FileIO(target, "r+") as file:
+@contextmanager
+def _in_place(target: Path) -> Iterator[FileIO]:
+    """Write in place, one at a time; on failure what was there is put back."""
+    with _IN_PLACE, FileIO(target, "r+") as file:
+        with suppress(ImportError, OSError):  # Windows, and file systems without locks
+            import fcntl
+
+            fcntl.flock(file, fcntl.LOCK_EX)  # against other processes, until it is closed
         before = file.readall()
         try:
-            _fill(file, data)
+            yield file
         except BaseException:
             _fill(file, before)
             raise

@@ -63,7 +63,7 @@ def _replay(argv: list[str]) -> None:
 
 
 def _train(argv: list[str]) -> None:
-    require("torch", "training")
+    require("torch", "training", ("scipy", "filelock"))
     from mrta_zoo.train.cli import train_command
 
     train_command(argv)
@@ -168,6 +168,7 @@ def _dispatch(arguments: list[str]) -> int:
     if not arguments:
         print(_help(), file=sys.stderr)
         return USER_ERROR
+    _check_current_folder()
     for argument in arguments:
         _check(argument)
     name, *rest = arguments
@@ -182,6 +183,14 @@ def _dispatch(arguments: list[str]) -> int:
         print(f"error: there is no {kind} {name!r}; expected one of {', '.join(COMMANDS)}", file=sys.stderr)
         return USER_ERROR
     return 0
+
+
+def _check_current_folder() -> None:
+    try:
+        os.getcwd()
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise ConfigError(f"the current folder cannot be used ({reason}); expected to be in one that exists") from None
 
 
 def _check(argument: str) -> None:

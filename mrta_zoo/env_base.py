@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 
+from mrta_zoo.errors import MissingExtraError
 from mrta_zoo.html import LITERAL
 from mrta_zoo.mission import Mission
 from mrta_zoo.observation import FloatTable
@@ -65,10 +66,14 @@ class EnvBase:
         """What a notebook shows: the mission as a picture, or as text if pygame is not installed."""
         if not self._world.agents:
             return f"<pre>{escape(f'{self}: no mission yet; call reset()')}</pre>"
+        text = f'<pre class="{LITERAL}">{escape(describe(self.mission))}</pre>'
         if find_spec("pygame") is None:
-            return f'<pre class="{LITERAL}">{escape(describe(self.mission))}</pre>'
-        from mrta_zoo.render.canvas import as_png  # pygame is heavy and optional
-        from mrta_zoo.render.picture import draw
+            return text
+        try:
+            from mrta_zoo.render.canvas import as_png  # pygame is heavy and optional
+            from mrta_zoo.render.picture import draw
+        except MissingExtraError:  # it is there, and broken
+            return text
 
         png = b64encode(as_png(draw(self.mission))).decode()
         return f'<img width="800" alt="{escape(headline(self.mission))}" src="data:image/png;base64,{png}">'

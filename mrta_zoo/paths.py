@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import unicodedata
+from contextlib import suppress
 from pathlib import Path
 
 from mrta_zoo.errors import MrtaError
@@ -15,6 +16,20 @@ _URL = re.compile(r"[a-z][a-z0-9+.-]+:/", re.IGNORECASE)  # of a drive there is 
 def suffix_of(path: str | os.PathLike[str]) -> str:
     """The suffix in small letters, such as ".csv"; "" if there is none."""
     return Path(path).suffix.lower()
+
+
+def as_spelt(path: Path) -> Path:
+    """`path` or, if nothing is there, what its folder holds under the same name in capital letters or other accents.
+
+    Other systems write names so; which of several it is, is settled by their order.
+    """
+    if os.path.lexists(path):
+        return path
+    with suppress(OSError, ValueError):  # ValueError: a null character in the path
+        for name in sorted(os.listdir(path.parent)):
+            if composed(name).lower() == composed(path.name).lower():
+                return path.with_name(name)
+    return path
 
 
 def make_folder(path: Path) -> None:

@@ -15,7 +15,7 @@ def register() -> None:
     try:
         import gymnasium
         import pettingzoo
-    except ImportError:
+    except (ImportError, OSError):  # OSError: PettingZoo asks for the current folder, which may have been deleted
         return
     if NAME not in gymnasium.registry:
         gymnasium.register(NAME, entry_point=GYMNASIUM)

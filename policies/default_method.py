@@ -11,7 +11,7 @@ BEST_FIRST = ("eils", "pyvrp", "capam-plus", "nearest")
 
 
 def default_method() -> tuple[str, str]:
-    """The first of `BEST_FIRST` that is installed, and what the very first is missing, in a sentence.
+    """The first of `BEST_FIRST` that can be had here, and what the very first is missing, in a sentence.
 
     Returns:
         The method's name, and the sentence; empty if it is the first.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import os
 import re
 import time
 from collections.abc import Sequence
@@ -245,7 +246,7 @@ def load_policy(name_or_path: str | Path, decode: Decode = "greedy", seed: int =
     path = Path(name_or_path)
     if str(name_or_path) in pretrained_names():
         path, name = pretrained_path(str(name_or_path)), str(name_or_path)
-    elif path.is_dir():
+    elif os.path.isdir(path):  # unlike Path.is_dir it is also False for a name that no folder can have
         path, name = weights_file(path), path.name
     elif suffix_of(path) == SUFFIX:
         name = path.stem

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from mrta_zoo.paths import suffix_of
+from mrta_zoo.paths import as_spelt, suffix_of
 
 SUFFIX = ".safetensors"
 """Of weights, in small or capital letters."""
@@ -17,11 +17,9 @@ def weights_file(place: Path) -> Path:
     Args:
         place: the file itself, or the folder of a training run.
     """
-    return place if suffix_of(place) == SUFFIX and not os.path.isdir(place) else place / f"policy{SUFFIX}"
+    return place if suffix_of(place) == SUFFIX and not os.path.isdir(place) else as_spelt(place / f"policy{SUFFIX}")
 
 
 def info_file(weights: Path) -> Path:
     """The JSON that belongs to weights, which need not be there."""
-    capital = weights.with_suffix(".JSON")
-    plain = weights.with_suffix(".json")
-    return capital if os.path.exists(capital) and not os.path.exists(plain) else plain
+    return as_spelt(weights.with_suffix(".json"))

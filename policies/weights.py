@@ -20,6 +20,7 @@ from mrta_zoo.atomic import replacing
 from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.source import read_text
+from mrta_zoo.paths import check_no_url
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.policy_files import info_file
 from mrta_zoo.policies.sharing import USUAL_KINDS, Network, Sharing, build_network
@@ -62,7 +63,13 @@ class PolicyInfo:
 
 
 def save_policy(path: Path, network: Network, info: PolicyInfo) -> None:
-    """Write `path` (….safetensors) and the JSON beside it, each atomically."""
+    """Write `path` (….safetensors) and the JSON beside it, each atomically.
+
+    Raises:
+        ConfigError: if `path` is a URL.
+        OSError: if a file cannot be written.
+    """
+    check_no_url(path, ConfigError)
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     write_tensors(path, dict(network.state_dict()))
@@ -75,6 +82,7 @@ def load_weights(path: Path) -> tuple[Network, PolicyInfo]:
     Raises:
         ConfigError: if a file is missing or malformed, or the weights don't fit the architecture.
     """
+    check_no_url(path, ConfigError)
     path = Path(path)
     info = read_json(info_file(path), PolicyInfo)
     return build_with(read_tensors(path), info, path).eval(), info

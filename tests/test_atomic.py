@@ -6,6 +6,7 @@ import errno
 import os
 import stat
 import tempfile
+import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -230,3 +231,53 @@ def test_a_file_that_may_not_be_written_to_is_left_alone(tmp_path: Path) -> None
     with pytest.raises(PermissionError):
         write(path, "new")
     assert path.read_text() == "old"
+
+
+@pytest.mark.parametrize("temporary", ["absent", "unwritable"])
+def test_where_there_is_no_room_but_in_place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, temporary: str) -> None:
+    """As in a container that may write to one file alone."""
+    path = tmp_path / "file"
+    path.write_text("old and longer")
+
+    def nowhere() -> str:
+        if temporary == "unwritable":
+            return "/elsewhere"
+        raise FileNotFoundError(errno.ENOENT, "No usable temporary directory found in ['/tmp']")
+
+    monkeypatch.setattr(tempfile, "gettempdir", nowhere)
+    monkeypatch.setattr(os, "open", raising(errno.EROFS))
+    write(path, "new")
+    assert path.read_text() == "new"
+    with pytest.raises(UnicodeEncodeError):
+        write(path, "ne\ud800")
+    assert path.read_text() == "new"
+    with pytest.raises(OSError, match="ead-only"):
+        write(tmp_path / "another", "new")
+
+
+def test_many_may_write_a_file_of_two_names(tmp_path: Path) -> None:
+    path = tmp_path / "file"
+    texts = [letter * size for letter, size in (("a", 10), ("b", 200_000), ("c", 3_000), ("d", 1_000_000))]
+    path.write_text("")
+    os.link(path, tmp_path / "other")
+    with ThreadPoolExecutor(4) as pool:
+        for _ in range(25):
+            list(pool.map(lambda text: write(path, text), texts))
+            assert path.read_text() in texts
+
+
+@pytest.mark.skipif(os.name == "nt", reason="no advisory locks there")
+def test_who_writes_in_place_waits_for_other_processes(tmp_path: Path) -> None:
+    import fcntl
+
+    path = tmp_path / "file"
+    path.write_text("old")
+    os.link(path, tmp_path / "other")
+    with path.open("r+") as file, ThreadPoolExecutor(1) as pool:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        written = pool.submit(write, path, "new")
+        time.sleep(0.05)
+        assert (written.done(), path.read_text()) == (False, "old")
+        fcntl.flock(file, fcntl.LOCK_UN)
+        written.result(timeout=10)
+    assert path.read_text() == "new"

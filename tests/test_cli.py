@@ -295,3 +295,18 @@ def test_the_flag_of_methods_may_be_spelt_any_way(
     for command in ("reproduce", "converge"):
         assert main([command, "--cases", str(cases), "--out", str(tmp_path / "out"), *spelt("none-such")]) == 2
         assert "there is no method 'none-such'" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the current folder cannot be deleted there")
+def test_a_current_folder_that_was_deleted(tmp_path: Path) -> None:
+    for arguments in (["--version"], ["solve", "m.csv"]):
+        (tmp_path / "gone").mkdir()
+        script = 'rmdir "$PWD"; exec "$0" -m mrta_zoo "$@"'
+        done = subprocess.run(
+            ["sh", "-c", script, sys.executable, *arguments],
+            cwd=tmp_path / "gone", capture_output=True, text=True, timeout=60, check=False,
+        )  # fmt: skip
+        assert (done.returncode, done.stdout) == (2, "")
+        assert done.stderr == (
+            "error: the current folder cannot be used (no such file or directory); expected to be in one that exists\n"
+        )

@@ -100,6 +100,16 @@ def test_policies_and_runs(tmp_path: Path) -> None:
     assert set(policy_files(f"{place}+polish").values()) == {place, tmp_path / "P.JSON"}
     assert len(digest_of_weights(str(place))) == 64
 
+    place.with_suffix(".JSON").rename(tmp_path / "P.Json")
+    assert load_policy(place).name == "P"
+    capital = tmp_path / "capital"
+    capital.mkdir()
+    place.rename(capital / "POLICY.SAFETENSORS")
+    (tmp_path / "P.Json").rename(capital / "POLICY.JSON")
+    assert load_policy(capital).name == "capital"
+    assert make_solver(str(capital)) is not None
+    assert set(policy_files(str(capital)).values()) == {capital / "POLICY.SAFETENSORS", capital / "POLICY.JSON"}
+
     checkpoint.start(tmp_path / "run", TrainConfig(updates=7, network=config))
     mark(tmp_path / "run" / "config.json")
     assert checkpoint.saved_config(tmp_path / "run").updates == 7

@@ -7,12 +7,14 @@ from pathlib import Path
 
 import pytest
 from command_line import Captured, fails
+from factories import small_scenario
 from sentences import check_sentence
 from valid_files import TABLE
 
+from mrta_zoo import Plan
 from mrta_zoo.cli import COMMANDS
 from mrta_zoo.errors import ConfigError, MrtaError
-from mrta_zoo.io import read_cases, read_plan, read_scenario, read_trace
+from mrta_zoo.io import read_cases, read_plan, read_scenario, read_trace, write_plan, write_scenario
 from mrta_zoo.paths import check_no_url
 
 POINTER = b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a2146\nsize 2512345\n"
@@ -93,6 +95,46 @@ def test_urls_are_not_taken_for_paths(url: str) -> None:
         with pytest.raises(ConfigError) as told:
             make(url)
         check_sentence(told.value, said)
+
+
+@pytest.mark.parametrize("url", ["https://example.org/a/m.json", "s3://bucket/m.csv", "https://example.org/m.txt"])
+def test_nothing_is_written_to_a_url(url: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("torch")
+    pytest.importorskip("matplotlib")
+    from mrta_zoo.eval.case_folder import write_case_folder
+    from mrta_zoo.eval.plot_plan import save_plan_picture
+    from mrta_zoo.policies.weights import load_weights
+    from mrta_zoo.train import checkpoint
+    from mrta_zoo.train.config import TrainConfig
+
+    monkeypatch.chdir(tmp_path)
+    scenario, plan = small_scenario(3), Plan.of([[0], [1], []])
+    for act in (
+        lambda: write_scenario(scenario, url),
+        lambda: write_plan(plan, url),
+        lambda: save_plan_picture(scenario, plan, Path(url)),
+        lambda: write_case_folder([scenario], Path(url), "csv"),
+        lambda: load_weights(Path(url)),
+        lambda: checkpoint.start(Path(url), TrainConfig()),
+        lambda: checkpoint.resume(Path(url)),
+    ):
+        with pytest.raises(MrtaError) as caught:
+            act()
+        check_sentence(caught.value, f"{url} is a URL; expected the path")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["a" * 300, "a\0"])
+def test_names_that_no_file_can_have(name: str) -> None:
+    pytest.importorskip("torch")
+    pytest.importorskip("matplotlib")
+    from mrta_zoo.eval.plot_plan import save_plan_picture
+    from mrta_zoo.policies.neural import load_policy
+
+    with pytest.raises(ConfigError, match="there is no policy"):
+        load_policy(name)
+    with pytest.raises(ConfigError, match="cannot be written"):
+        save_plan_picture(small_scenario(3), Plan.of([[0], [1], []]), Path(name + ".png"))
 
 
 def test_a_url_is_known_without_its_second_slash() -> None:

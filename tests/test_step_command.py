@@ -35,6 +35,15 @@ def script(tmp_path: Path, text: str) -> str:
     return str(tmp_path / "commands.txt")
 
 
+def test_an_empty_file_becomes_a_new_session(mission: str, tmp_path: Path, capsys: Captured) -> None:
+    """As a container wants one to be there before it gets it mounted."""
+    session = tmp_path / "session.json"
+    session.touch()
+    line = ["step", mission, "--policy", "nearest", "--session", str(session), "--script", script(tmp_path, "follow")]
+    assert main(line) == 0
+    assert read_trace(session).choices[0] == record(SCENARIO, "nearest").choices[0]
+
+
 def test_a_script_steps_and_the_session_is_saved(mission: str, tmp_path: Path, capsys: Captured) -> None:
     session = tmp_path / "session.json"
     arguments = ["step", "--policy", "nearest", "--session", str(session), "--script"]

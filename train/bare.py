@@ -166,7 +166,7 @@ def read_config(path: Path) -> TrainConfig:
     except ConfigError:
         raise
     except (OSError, ValueError, TypeError, AttributeError) as error:
-        raise ConfigError(f"{path}: not a configuration ({error})") from None
+        raise ConfigError(f"{path}: not a configuration{why_unreadable(path, error)}") from None
 
 
 def _config_of(values: dict[str, Any]) -> TrainConfig:
@@ -290,8 +290,11 @@ def main() -> None:
         torch.set_num_threads(a.threads)
     try:
         train(read_config(a.config), a.out, a.plans, a.workers, a.seconds, a.compiled, a.fit, a.resume)
-    except (ConfigError, OSError) as error:  # OSError: a file cannot be written
+    except ConfigError as error:
         print(f"error: {error}", file=sys.stderr)
+        sys.exit(2)
+    except OSError as error:
+        print(f"error: {a.out} cannot be written: {(error.strerror or str(error)).lower()}", file=sys.stderr)
         sys.exit(2)
     except KeyboardInterrupt:
         sys.exit(130)

@@ -24,9 +24,10 @@ from typing import Any
 import torch
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.io.records import write_records
 from mrta_zoo.io.source import check_name
-from mrta_zoo.paths import make_folder
+from mrta_zoo.paths import check_no_url, make_folder
 from mrta_zoo.policies.weights import (
     PolicyInfo,
     load_state,
@@ -58,18 +59,29 @@ def start(folder: Path, config: TrainConfig, options: RunOptions | None = None) 
     """Begin a run in a new or empty folder.
 
     Raises:
-        ConfigError: if the folder already holds a run, can't be written, or has a name that no policy can have.
+        ConfigError: if the folder already holds a run, another process is using it, it can't be written, or it has a
+            name that no policy can have.
     """
-    if os.path.lexists(folder / "config.json") or _entries(folder / "checkpoints"):
-        raise ConfigError(f"{folder} already holds a run; go on with it (--resume), or choose another folder")
+    check_no_url(folder, ConfigError)
+    _check_new(folder)
     check_name(folder.name, str(folder), "the policy's name", ConfigError)  # what plans will be signed with
     run = Reinforce(config, options=options)  # before anything is written: it may refuse the configuration
     try:
         make_folder(folder)
-        write_json(folder / "config.json", config)
+        lock = lock_folder(folder)
+        try:
+            _check_new(folder)  # another process may have begun one meanwhile
+            write_json(folder / "config.json", config)
+        finally:
+            lock.release()
     except OSError as error:
         raise ConfigError(f"{folder}: can't write a run there ({error.strerror})") from None
     return run
+
+
+def _check_new(folder: Path) -> None:
+    if os.path.lexists(folder / "config.json") or _entries(folder / "checkpoints"):
+        raise ConfigError(f"{folder} already holds a run; go on with it (--resume), or choose another folder")
 
 
 def resume(folder: Path, options: RunOptions | None = None) -> tuple[Reinforce, float]:
@@ -108,7 +120,8 @@ def saved_config(folder: Path) -> TrainConfig:
     Raises:
         ConfigError: if there is no run.
     """
-    if not (folder / "config.json").exists():
+    check_no_url(folder, ConfigError)
+    if not os.path.exists(folder / "config.json"):
         raise ConfigError(f"{folder} holds no run to resume: there is no config.json")
     return read_json(folder / "config.json", TrainConfig)
 
@@ -147,8 +160,10 @@ def _save(folder: Path, run: Reinforce, seconds: float) -> None:
     if baseline := run.baseline.state():
         write_tensors(partial / "baseline.safetensors", baseline)
     write_json(partial / "state.json", RunState(run.update, round(seconds, 1), run.history))
+    if not os.path.lexists(folder / "config.json"):  # the folder has gone, and is a new one
+        write_json(folder / "config.json", run.config)
     # Before the checkpoint counts: a run killed in between validates again and writes the same policy.
-    if run.history[-1] is run.best:
+    if run.history[-1] is run.best or not os.path.lexists(folder / "policy.safetensors"):
         save_policy(folder / "policy.safetensors", run.network, policy_info(run, seconds))
     write_records(run.history, folder / "history.csv")
     shutil.rmtree(final, ignore_errors=True)

@@ -25,9 +25,13 @@ from mrta_zoo.policies.weights import save_policy
 from mrta_zoo.train import checkpoint
 from mrta_zoo.train.collect import BARE, collect
 from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.event_log import EventLog
 from mrta_zoo.train.plans import make_plans
 from mrta_zoo.train.presets import PRESETS
 from mrta_zoo.train.reinforce import Reinforce, RunOptions, Update
+
+CURVES = ("train/loss", "train/gradient_norm", "train/learning_rate", "train/episodes_per_second")
+"""What TensorBoard shows of updates."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,20 +102,13 @@ def _run(command: TrainCommand) -> None:
                 f"{command.out} holds a run of mrta_zoo.train.bare, which goes on there (--resume); to train on from "
                 f"its policy, begin a new run: --initial {command.out}, another --out, and no --resume"
             )
-        run, seconds = checkpoint.resume(command.out, options)
-        changed = [
-            f.name for f in fields(TrainConfig) if getattr(command.config, f.name) != getattr(run.config, f.name)
-        ]
-        if changed:
-            raise ConfigError(
-                f"--resume keeps the run's configuration; {changed[0]} is {getattr(run.config, changed[0])} in "
-                f"{command.out}, not {getattr(command.config, changed[0])}; to train on otherwise, begin a new "
-                f"run from its weights: --initial {command.out}, another --out, and no --resume"
-            )
+        _check_kept(command)
     else:
         run, seconds = checkpoint.start(command.out, command.config, options), 0.0
     lock = lock_folder(command.out)
     try:
+        if command.resume:  # under the lock: what another process is still writing would be read half old
+            run, seconds = checkpoint.resume(command.out, options)
         if run.imitates:
             run.set_plans(make_plans(run.config, command.out / "plans", command.workers))
         if command.prepare:
@@ -123,6 +120,18 @@ def _run(command: TrainCommand) -> None:
         raise
     finally:
         lock.release()
+
+
+def _check_kept(command: TrainCommand) -> None:
+    """Raises `ConfigError` if a run that is to be resumed is not there, or was told otherwise."""
+    kept = checkpoint.saved_config(command.out)
+    changed = [f.name for f in fields(TrainConfig) if getattr(command.config, f.name) != getattr(kept, f.name)]
+    if changed:
+        raise ConfigError(
+            f"--resume keeps the run's configuration; {changed[0]} is {getattr(kept, changed[0])} in "
+            f"{command.out}, not {getattr(command.config, changed[0])}; to train on otherwise, begin a new "
+            f"run from its weights: --initial {command.out}, another --out, and no --resume"
+        )
 
 
 def parse(argv: Sequence[str]) -> TrainCommand:
@@ -153,8 +162,6 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
         seconds: time already spent on it.
         console: where to show progress; standard error by default.
     """
-    from torch.utils.tensorboard import SummaryWriter
-
     console = console or messages_console()
     config = run.config
     parameters = sum(parameter.numel() for parameter in run.network.parameters())
@@ -180,7 +187,7 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
     )
     with (
         # What an earlier session has shown beyond its last checkpoint comes again.
-        SummaryWriter(str(folder / "tensorboard"), purge_step=first + 1 if run.history else 0) as board,
+        EventLog(folder / "tensorboard", first + 1 if run.history else 0, lambda why: say(console, why)) as board,
         Progress(*fitting(columns, console), console=console, disable=not console.is_terminal) as progress,
     ):
         bar = progress.add_task("", total=config.total_updates, completed=first, rate=0.0, completion="-")
@@ -190,17 +197,12 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
             if isinstance(event, Update):
                 rate = (event.update - first) * per_update / (now - session)
                 progress.update(bar, completed=event.update, rate=rate)
-                board.add_scalar("train/loss", event.loss, event.update)
-                board.add_scalar("train/gradient_norm", event.gradient_norm, event.update)
-                board.add_scalar("train/learning_rate", event.learning_rate, event.update)
-                board.add_scalar("train/episodes_per_second", rate, event.update)
+                values = (event.loss, event.gradient_norm, event.learning_rate, rate)
+                board.add(event.update, dict(zip(CURVES, values, strict=True)))
                 continue
-            try:
-                board.add_scalar("validation/completion", event.completion, event.update)
-                board.add_scalar("validation/cost", event.cost, event.update)
-                board.flush()  # before the checkpoint, after which they do not come again
-            finally:
-                _save(folder, run, now - begun)
+            board.add(event.update, {"validation/completion": event.completion, "validation/cost": event.cost})
+            board.flush()  # before the checkpoint, after which they do not come again
+            _save(folder, run, now - begun)
             shown = f"{100 * event.completion:.2f} %"
             progress.update(bar, completion=shown)
             note = "  (baseline replaced)" if event.baseline_replaced else ""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import pandas as pd
 from tyro.conf import arg
@@ -25,6 +25,7 @@ from mrta_zoo.eval.sheet import Sheet
 from mrta_zoo.io import Case
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.source import write_text
+from mrta_zoo.paths import composed
 from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import POLISH, make_solver, method_names
@@ -76,13 +77,13 @@ def converge_command(argv: Sequence[str]) -> None:
     methods = _usual(USUAL) if command.methods is None else names(command.methods)
     points = _usual(USUAL_POINTS) if command.points is None else names(command.points)
     cases = every_of_each_size(read_all(command.cases), command.every)
+    # Under their names as rows have them.
     plan: list[tuple[float | None, dict[str, Solver]]] = [
-        (None, {name: make_solver(name, seed=command.seed) for name in points})
+        (None, {composed(name): make_solver(name, seed=command.seed) for name in points})
     ]
-    plan += [
-        (budget, {n: make_solver(n, seed=command.seed, budget=budget, threads=command.threads) for n in methods})
-        for budget in budgets
-    ]
+    for seconds in budgets:
+        options: dict[str, Any] = {"seed": command.seed, "budget": seconds, "threads": command.threads}
+        plan.append((seconds, {composed(name): make_solver(name, **options) for name in methods}))
     settings = {"cases": shown_cases(command.cases), "methods": methods, "points": points, "budgets": budgets,
                 "every": command.every, "seed": command.seed, "threads": command.threads}  # fmt: skip
     manifest = make_manifest("converge", settings, cases, dict.fromkeys((*methods, *points)))
@@ -94,7 +95,8 @@ def converge_command(argv: Sequence[str]) -> None:
             sessions.append(this_session(command.threads))
         for budget, solvers in plan:
             _measure(cases, solvers, rows, budget)
-    order = [(name, None) for name in points] + [(name, budget) for name in methods for budget in budgets]
+    order: list[tuple[str, float | None]] = [(composed(name), None) for name in points]
+    order += [(composed(name), seconds) for name in methods for seconds in budgets]
     curves = curves_of(rows.rows, order, command.seed)
     text = curves.to_csv(index=False, lineterminator="\n")
     with Outputs() as outputs:

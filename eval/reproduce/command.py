@@ -32,6 +32,7 @@ from mrta_zoo.eval.rows_file import RowsFile
 from mrta_zoo.eval.runner import Solved, row_of
 from mrta_zoo.eval.statistics import LEVEL, RESAMPLES
 from mrta_zoo.io import Case
+from mrta_zoo.paths import composed
 from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import METHODS, make_solver, method_names
@@ -87,14 +88,15 @@ def reproduce_command(argv: Sequence[str]) -> None:
     """
     command = parse(Reproduce, argv, "reproduce")
     absent: dict[str, str] = {}
-    methods = usual_methods(absent) if command.methods is None else names(command.methods)
-    against = reference_of(methods, command.against)
+    asked = usual_methods(absent) if command.methods is None else names(command.methods)
+    methods = [composed(method) for method in asked]  # as rows call them
+    against = reference_of(methods, command.against and composed(command.against))
     with preparing():
-        solvers = {method: _solver(method, command) for method in methods}
+        solvers = {composed(method): _solver(method, command) for method in asked}
     cases = read_all(command.cases)
     settings = {"cases": shown_cases(command.cases), "methods": methods, "budget": command.budget, "seed": command.seed,
                 "threads": command.threads}  # fmt: skip
-    manifest = make_manifest("reproduce", settings, cases, methods)
+    manifest = make_manifest("reproduce", settings, cases, asked)
     with cpu_threads(command.threads):
         open_experiment(command.out, manifest)
         rows = RowsFile(command.out / "rows.csv", Row)

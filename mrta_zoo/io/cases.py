@@ -11,6 +11,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from mrta_zoo.errors import ScenarioError
+from mrta_zoo.io.csv_format import is_other_csv
 from mrta_zoo.io.files import read_scenario
 from mrta_zoo.io.json_format import is_other_json
 from mrta_zoo.io.source import StrPath, check_name, count, shown
@@ -46,10 +47,10 @@ def read_cases(folder: StrPath, tell: Callable[[str], None] | None = None) -> li
     """All cases of a folder in natural order of their names (``a2`` before ``a10``).
 
     Cases are TAPTC task files ``group*/*.txt`` (agent files in ``agent/``), and ``*.json`` and ``*.csv``
-    scenarios in the folder itself, in small or capital letters. JSON files of this package that are no scenarios,
-    such as plans, are passed over. If there is a ``reference.csv`` with columns ``case,tasks,robots`` and one for
-    each method, its whole numbers of completed tasks become the references; rows of other cases are passed over, and
-    a cell may be empty.
+    scenarios in the folder itself, in small or capital letters. JSON and CSV files of this package that are no
+    scenarios, such as plans and their schedules, are passed over. If there is a ``reference.csv`` with columns
+    ``case,tasks,robots`` and one for each method, its whole numbers of completed tasks become the references; rows of
+    other cases are passed over, and a cell may be empty.
 
     Args:
         folder: where they are.
@@ -78,7 +79,12 @@ def read_cases(folder: StrPath, tell: Callable[[str], None] | None = None) -> li
     for path in paths:
         if path in tables or is_other_json(path):
             continue
-        scenario = read_scenario(path)
+        try:
+            scenario = read_scenario(path)
+        except ScenarioError:
+            if is_other_csv(path):
+                continue
+            raise
         if scenario.name in sources:
             raise ScenarioError(
                 f"{path}: the case is called {shown(scenario.name)}, as in {sources[scenario.name]}; "
@@ -109,7 +115,9 @@ def _files_of_cases(root: Path) -> list[Path]:
     found = [path for group in groups for path in sorted(group.iterdir()) if suffix_of(path) == ".txt"]
     for suffix in (".json", ".csv"):
         found += [path for path in entries if suffix_of(path) == suffix]
-    return [path for path in found if not path.name.startswith(".")]
+    found = [path for path in found if not path.name.startswith(".")]
+    # What leads nowhere is left to the reader, who says so; a pipe would keep it waiting.
+    return [path for path in found if os.path.isfile(path) or not os.path.exists(path)]
 
 
 def _strangers(rows: Mapping[str, object], cases: Mapping[str, object]) -> str:

@@ -18,6 +18,7 @@ from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, in_id_order, place_in_file
 from mrta_zoo.io.source import StrPath, number, shown, write_text
 from mrta_zoo.io.table import read_table
+from mrta_zoo.paths import suffix_of
 from mrta_zoo.scenario import Scenario
 
 COLUMNS = ("kind", "x", "y", "deadline", "workload", "capacity", "speed")
@@ -28,6 +29,9 @@ _OF_KIND = {
     "map": (),
     "origin": (),
 }
+
+OTHERS = (("robot", "robot_name", "task"), ("case", "method", "completed"), ("update", "episodes", "completion"))
+"""Columns by which schedules, rows of measurements and histories of training are known."""
 
 
 def read_csv_part(path: StrPath) -> Part:
@@ -70,6 +74,17 @@ def read_csv_part(path: StrPath) -> Part:
         map=_map(once),
         name=Path(path).stem,
     )
+
+
+def is_other_csv(path: Path) -> bool:
+    """Whether a CSV file is one of this package's that is no scenario, by the columns that it has."""
+    if suffix_of(path) != ".csv":
+        return False
+    try:
+        header = {cell.lower() for cell in read_table(path, ScenarioError)[0][1]}
+    except ScenarioError:
+        return False  # the reader will say what is wrong with it
+    return "kind" not in header and any(header.issuperset(columns) for columns in OTHERS)
 
 
 def _map(once: dict[str, tuple[str, float, float]]) -> MapRow | None:

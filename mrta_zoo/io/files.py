@@ -10,7 +10,7 @@ from mrta_zoo.io.json_format import read_json_part, write_json
 from mrta_zoo.io.parts import Part, assemble
 from mrta_zoo.io.source import StrPath, shown
 from mrta_zoo.io.taptc import find_agent_file, read_agent_part, read_task_part, write_taptc
-from mrta_zoo.paths import suffix_of
+from mrta_zoo.paths import check_no_url, suffix_of
 from mrta_zoo.scenario import Scenario
 
 
@@ -42,6 +42,7 @@ def write_scenario(scenario: Scenario, path: StrPath) -> None:
     Raises:
         ScenarioError: if the format cannot express the scenario or the file cannot be written.
     """
+    check_no_url(path, ScenarioError)
     path = Path(path)
     suffix = suffix_of(path)
     if suffix == ".json":

@@ -92,6 +92,7 @@ def write_text(text: str, path: StrPath, error: type[MrtaError]) -> None:
     Raises:
         error: if the file cannot be written.
     """
+    check_no_url(path, error)
     try:
         with replacing(path) as partial:
             partial.write_text(text, encoding="utf-8", newline="")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Sequence
 
 from mrta_zoo.counted import counted
 from mrta_zoo.errors import MrtaError
@@ -13,8 +14,8 @@ from mrta_zoo.io.source import StrPath, read_text, shown
 def read_table(path: StrPath, error: type[MrtaError]) -> list[tuple[str, list[str]]]:
     """Where each row of a CSV file stands, and its cells; at least the header.
 
-    Rows and last columns with nothing in them, as spreadsheets leave them, are passed over; every row has as many
-    cells as the header.
+    Rows and columns with nothing in them, as spreadsheets leave them, are passed over; every row has as many cells as
+    the header, but for empty ones at its end.
 
     Args:
         path: the file.
@@ -24,27 +25,32 @@ def read_table(path: StrPath, error: type[MrtaError]) -> list[tuple[str, list[st
         error: if the file is missing or is not such a table.
     """
     reader = csv.reader(io.StringIO(read_text(path, error), newline=""), strict=True)
-    table: list[tuple[str, list[str]]] = []
+    places: list[str] = []
+    rows: list[list[str]] = []
     try:
         for cells in reader:
-            stripped = [cell.strip() for cell in cells]
-            if not any(stripped):
-                continue
-            where = f"{path}, line {reader.line_num}"
-            if not table:
-                _check_separator(where, stripped, error)
-            if table and len(cells) != len(table[0][1]):
-                raise error(
-                    f"{where}: {shown(','.join(cells))} has {counted(len(cells), 'cell')}; "
-                    f"expected {len(table[0][1])} as in the header"
-                )
-            table.append((where, stripped))
+            if any(cell.strip() for cell in cells):
+                places.append(f"{path}, line {reader.line_num}")
+                rows.append(cells)
     except csv.Error as problem:
         raise error(f"{path}, line {reader.line_num}: {problem}; expected cells separated by commas") from None
-    if not table:
+    if not rows:
         raise error(f"{path} has no rows; expected a header row")
-    width = max(index for _, cells in table for index, cell in enumerate(cells, start=1) if cell)
-    return [(where, cells[:width]) for where, cells in table]
+    used = [[cell.strip() for cell in row] for row in columns_in_use(rows)]
+    _check_separator(places[0], used[0], error)
+    for where, row, cells in zip(places, rows, used, strict=True):
+        if len(cells) != len(used[0]):
+            raise error(
+                f"{where}: {shown(','.join(row))} has {counted(len(row), 'cell')}; "
+                f"expected {len(rows[0])} as in the header"
+            )
+    return list(zip(places, used, strict=True))
+
+
+def columns_in_use(rows: Sequence[Sequence[str]]) -> list[list[str]]:
+    """The rows without the columns in which nothing but blanks stands; those that end too early still do."""
+    used = sorted({index for row in rows for index, cell in enumerate(row) if cell.strip()})
+    return [[row[index] for index in used if index < len(row)] for row in rows]
 
 
 def _check_separator(where: str, header: list[str], error: type[MrtaError]) -> None:

@@ -19,6 +19,7 @@ from mrta_zoo.counted import counted
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, assemble, in_id_order
 from mrta_zoo.io.source import StrPath, count, number, read_text, shown, write_text
+from mrta_zoo.paths import as_spelt
 from mrta_zoo.scenario import Scenario, map_origin_for
 
 _CASE_NAME = re.compile(r"r[0-9]+(a[0-9]+i[0-9]+)", re.IGNORECASE)
@@ -40,7 +41,7 @@ def find_agent_file(task_path: StrPath) -> Path:
     """The agent file that belongs to a task file, by the layout of the published cases.
 
     For ``DIR/group1/r11a2i00.txt`` it is the first that exists of ``r11a2i00.txt`` and ``a2i00.txt`` in
-    ``DIR/agent/``, then in ``DIR/group1/agent/``.
+    ``DIR/agent/``, then in ``DIR/group1/agent/``, in small or capital letters.
 
     Raises:
         ScenarioError: if none of them exists.
@@ -52,10 +53,9 @@ def find_agent_file(task_path: StrPath) -> Path:
     folders = (Path(os.path.normpath(path.parent / "..")) / "agent", path.parent / "agent")
     candidates = [folder / name for folder in folders for name in names]
     for candidate in candidates:
-        for suffix in dict.fromkeys((path.suffix, path.suffix.lower(), path.suffix.upper())):
-            there = candidate.with_suffix(suffix)
-            if os.path.isfile(there):  # unlike Path.is_file it is also False without permission
-                return there
+        there = as_spelt(as_spelt(candidate.parent) / candidate.name)
+        if os.path.isfile(there):  # unlike Path.is_file it is also False without permission
+            return there
     raise ScenarioError(
         f"{path}: there is no agent file; looked for {', '.join(map(str, candidates))}; name one with --agents"
     )

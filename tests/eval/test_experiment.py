@@ -104,6 +104,20 @@ def test_malformed_rows_are_refused(tmp_path: Path, line: str | None, sentence: 
         RowsFile(path, Row)
 
 
+@pytest.mark.parametrize("at", [0, 3, 10])
+def test_empty_columns_of_a_spreadsheet_are_passed_over(tmp_path: Path, at: int) -> None:
+    path = tmp_path / "rows.csv"
+    RowsFile(path, Row).append(replace(ROW, case="a", method="m"))
+    lines = [line.split(",") for line in path.read_text().splitlines()]
+    path.write_text("".join(",".join([*line[:at], "", *line[at:]]) + "\n" for line in lines) + ",,,,\n")
+    file = RowsFile(path, Row)
+    file.append(replace(ROW, case="b", method="m"))
+    assert [row.case for row in RowsFile(path, Row).rows] == ["a", "b"]
+    path.write_text("".join(",".join([*line[:at], "7", *line[at:]]) + "\n" for line in lines))
+    with pytest.raises(ConfigError, match="line 1: the columns are"):
+        RowsFile(path, Row)
+
+
 def test_an_interruption_costs_one_case(tmp_path: Path) -> None:
     path = tmp_path / "rows.csv"
     first = Breaks(after=2)
@@ -159,6 +173,48 @@ def test_digests_tell_cases_and_weights_apart(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match="no such file"):
         digest_of_weights(str(tmp_path))
     assert list(make_manifest("eval", {}, CASES, ["nearest", "capam"]).weights) == ["capam"]
+
+
+def test_digests_tell_where_the_map_lies() -> None:
+    where = replace(CASES[0], scenario=replace(CASES[0].scenario, map_origin=(-0.1, 0.0)))
+    assert digest_of_cases([where]) != digest_of_cases(CASES[:1])
+    at_nought = replace(CASES[0], scenario=replace(CASES[0].scenario, map_origin=(0.0, 0.0)))
+    assert digest_of_cases([at_nought]) == digest_of_cases(CASES[:1])
+
+
+def test_accents_may_be_written_in_two_ways(tmp_path: Path) -> None:
+    """As one character or two: of methods, cases and settings, in what was kept and in what is asked for now."""
+    one, two = "caf\u00e9", "cafe\u0301"
+    for spelt in (two, one, two):
+        case = replace(CASES[0], name=spelt)
+        cases = digest_of_cases([case])
+        open_experiment(
+            tmp_path / "out", Manifest(command="c", settings={"m": [spelt]}, cases=cases, weights={spelt: ""})
+        )
+        file = RowsFile(tmp_path / "out" / "rows.csv", Row)
+        measure([case], {spelt: make_solver("nearest")}, file, row_of, known)
+        assert len(file.rows) == 1
+
+
+def test_a_method_whose_path_has_accents(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from mrta_zoo.policies.capam.config import NetworkConfig
+    from mrta_zoo.policies.sharing import build_network
+    from mrta_zoo.policies.weights import PolicyInfo, save_policy
+
+    monkeypatch.chdir(tmp_path)
+    config = NetworkConfig(embedding=32, heads=4)
+    two = "cafe\u0301.safetensors"
+    save_policy(Path(two), build_network(config, "shared", 1, seed=0), PolicyInfo(network=config))
+    Path("cases").mkdir()
+    for case in CASES:
+        write_scenario(case.scenario, f"cases/{case.scenario.name}.csv")
+    for line in (
+        f"reproduce --cases cases --methods nearest,{two} --against {two} --out report",
+        f"converge --cases cases --methods {two} --points nearest --budgets 0.01 --out curves",
+    ):
+        for _ in range(2):
+            assert main(line.split()) == 0
+    assert main(f"eval --cases cases --methods {two},caf\u00e9.safetensors".split()) == 2
 
 
 def test_cases_of_several_folders(tmp_path: Path) -> None:

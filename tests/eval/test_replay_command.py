@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from factories import small_scenario
 
+from mrta_zoo import Plan
 from mrta_zoo.cli import main
 from mrta_zoo.debug.recorder import record
 from mrta_zoo.io import write_plan, write_scenario, write_trace
@@ -21,6 +22,9 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     trace = record(SCENARIO, "edf")
     write_trace(trace, "trace.json")
     write_plan(trace.plan(), "plan.json")
+    write_plan(Plan.of([[0]]), "short.json")
+    Path("commands").write_text("log\n")
+    Path("pointer.json").write_text("version https://git-lfs.github.com/spec/v1\noid sha256:0\n")
 
 
 @pytest.mark.parametrize(
@@ -59,6 +63,12 @@ def test_a_trained_policy_by_default(capsys: pytest.CaptureFixture[str]) -> None
         ("case.json --policy trace.json --out trace.json", "--out is trace.json, which is the file trace.json"),
         ("absent.json", "absent.json: there is no such file"),
         ("case.json --policy unheard-of", "there is no method 'unheard-of'"),
+        ("case.json --policy absent.json", "absent.json: there is no such file"),
+        ("case.json --policy nearest,pointer.json", "pointer.json is a pointer of Git LFS; expected the file itself"),
+        ("case.json --policy case.json", "case.json: format is 'mrta_zoo.scenario'"),
+        ("short.json --scenario case.json", "short.json: "),
+        ("case.json --policy short.json", "short.json: "),
+        ("plan.json --scenario case.json --policy short.json", "short.json: "),
     ],
 )
 def test_errors(arguments: str, sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -66,3 +76,11 @@ def test_errors(arguments: str, sentence: str, capsys: pytest.CaptureFixture[str
     assert main(["replay", *arguments.split()]) == 2
     assert sentence in capsys.readouterr().err
     assert {path: path.read_bytes() for path in Path().iterdir()} == before
+
+
+@pytest.mark.parametrize(
+    "command", ["step case.json --policy short.json --script commands", "compare case.json --methods short.json,edf"]
+)
+def test_a_plan_that_does_not_fit_is_named(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(command.split()) == 2
+    assert capsys.readouterr().err.startswith("error: short.json: ")

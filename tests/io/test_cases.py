@@ -1,5 +1,6 @@
 """Folders of cases and their reference tables."""
 
+import os
 import pickle
 from pathlib import Path
 
@@ -147,6 +148,16 @@ def test_accents_may_be_written_in_two_ways(tmp_path: Path, file: str, row: str)
         read_cases(tmp_path)
 
 
+@pytest.mark.parametrize(
+    "text",
+    [",case,tasks,robots,m\n,c,3,1,1\n", "case,tasks,,robots,m\nc,3,,1,1\n", "case,tasks,robots,m,,\nc,3,1,1,,,,\n"],
+)
+def test_empty_columns_of_a_reference_are_passed_over(tmp_path: Path, text: str) -> None:
+    write_scenario(scenario("c"), tmp_path / "c.csv")
+    (tmp_path / "reference.csv").write_text(text)
+    assert [dict(case.reference) for case in read_cases(tmp_path)] == [{"m": 1}]
+
+
 def test_rows_that_match_no_case_are_told(folder: Path) -> None:
     def told(*names: str) -> list[str]:
         sentences: list[str] = []
@@ -199,3 +210,50 @@ def test_a_second_reference_table_is_refused(folder: Path) -> None:
     if len([*folder.glob("[rR]*")]) == 2:  # capital letters count here
         with pytest.raises(ScenarioError, match=r"reference\.csv: there is REFERENCE\.CSV, too; expected one"):
             read_cases(folder)
+
+
+@pytest.mark.parametrize(
+    ("agents", "task"),
+    [
+        ("AGENT/c.txt", "c.txt"),
+        ("Agent/c.Txt", "c.txt"),
+        ("agent/c.txt", "c.Txt"),
+        ("agent/caf\u00e9.txt", "cafe\u0301.txt"),
+        ("AGENT/cafe\u0301.TXT", "caf\u00e9.txt"),
+        ("group1/AGENT/A2I00.TXT", "r11a2i00.txt"),
+    ],
+)
+def test_agent_files_may_be_spelt_otherwise(tmp_path: Path, agents: str, task: str) -> None:
+    for path in (tmp_path / "group1" / task, tmp_path / agents):
+        path.parent.mkdir(exist_ok=True, parents=True)
+    write_taptc(scenario("c"), tmp_path / "group1" / task, tmp_path / agents)
+    assert [case.scenario.num_robots for case in read_cases(tmp_path)] == [1]
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "robot,robot_name,task,task_name,x,y,depart,arrive,finish,deadline,slack",
+        "case,method,tasks,robots,completed,completion,cost,distance,makespan,seconds",
+        "update,episodes,completion,cost,baseline_replaced",
+    ],
+)
+def test_tables_of_results_among_the_scenarios_are_passed_over(tmp_path: Path, header: str) -> None:
+    write_scenario(scenario("c"), tmp_path / "c.csv")
+    (tmp_path / "table.CSV").write_text(f"{header}\n{','.join('1' for _ in header.split(','))}\n")
+    assert [case.name for case in read_cases(tmp_path)] == ["c"]
+    (tmp_path / "table.CSV").write_text("type,x,y\n1,1,1\n")
+    with pytest.raises(ScenarioError, match=r"table\.CSV, line 1: there is no column 'type'"):
+        read_cases(tmp_path)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names here")
+def test_only_files_are_cases(tmp_path: Path) -> None:
+    write_scenario(scenario("c"), tmp_path / "c.csv")
+    (tmp_path / "group1").mkdir()
+    for name in ("a.json", "a.csv", "reference.csv", "group1/a.txt"):
+        os.mkfifo(tmp_path / name)
+    (tmp_path / "folder.json").mkdir()
+    (tmp_path / "d.csv").symlink_to(tmp_path / "elsewhere")
+    (tmp_path / "c.csv").rename(tmp_path / "elsewhere")
+    assert [case.name for case in read_cases(tmp_path)] == ["d"]

@@ -58,6 +58,9 @@ def test_content(tmp_path: Path) -> None:
         ",,,,,,\n" + FULL.replace("robot,7", ',,,,,,\n , ,,,,,\n"","",,,,,""\nrobot,7') + ",,,,,,\n,,,,,,\n",
         FULL.replace("\n", ",,\n"),
         FULL.replace("\n", ', ,""\n') + ",,,,,,,,\n",
+        FULL.replace("\n", "\n,").removesuffix(",").replace("kind", ",kind", 1),
+        "\n".join(",".join([*line.split(",")[:3], " ", *line.split(",")[3:]]) for line in FULL.splitlines()),
+        FULL.replace("task,3,4,50,6.5,,", "task,3,4,50,6.5,,,,"),
         "\ufeff" + FULL,
         # columns in another order, rows by id
         "id,speed,kind,y,x,capacity,workload,deadline\n"

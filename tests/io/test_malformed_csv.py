@@ -34,7 +34,15 @@ BAD_CSV = [
         TABLE.replace("100,20,,", "100,20,"),
         "line 4: 'task,3,4,100,20,' has 6 cells; expected 7 as in the header",
     ),
-    (TABLE.replace("100,20,,", "100,20,,,"), "line 4: 'task,3,4,100,20,,,' has 8 cells; expected 7"),
+    (TABLE.replace("100,20,,", "100,20,,,7"), "line 4: 'task,3,4,100,20,,,7' has 8 cells; expected 7"),
+    (
+        ",kind,x,y,deadline,workload,capacity\n,task,1,1,1,1,\n7,robot,1,1,,,1\n",
+        "line 1: there is no column ''; expected kind",
+    ),
+    (
+        "kind,x,y,,deadline,workload,capacity\ntask,1,1,7,1,1,\nrobot,1,1,,,,1\n",
+        "line 1: there is no column ''; expected kind",
+    ),
     (TABLE.replace("100,20,,", "100,20,1,"), "line 4: capacity of a task is '1'; expected an empty cell"),
     (TABLE.replace("5,6,,,2", "5,6,30,,2"), "line 5: deadline of a robot is '30'; expected an empty cell"),
     (TABLE.replace("100,50,,", "100,50,7,"), "line 2: deadline of a map is '7'; expected an empty cell"),

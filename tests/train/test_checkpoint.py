@@ -19,6 +19,7 @@ from filelock import FileLock
 from torch import Tensor
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.policies.capam.config import NetworkConfig
 from mrta_zoo.policies.neural import load_policy
 from mrta_zoo.policies.weights import read_tensors, write_tensors
@@ -92,6 +93,47 @@ def test_one_process_at_a_time(tmp_path: Path) -> None:
     train_command(["--out", str(tmp_path), "--resume"])
     with FileLock(tmp_path / ".lock", timeout=0):
         assert (tmp_path / "policy.json").exists()
+
+
+@pytest.mark.parametrize("still_runs", [True, False])
+def test_a_run_begun_at_the_same_time_is_let_be(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, still_runs: bool
+) -> None:
+    theirs, make = FileLock(tmp_path / ".lock"), checkpoint.Reinforce
+
+    def make_while_another_begins(*arguments: object, **options: object) -> Reinforce:
+        (tmp_path / "config.json").write_text("theirs")
+        if still_runs:
+            theirs.acquire()
+        return make(*arguments, **options)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(checkpoint, "Reinforce", make_while_another_begins)
+    says = "is in use by another run; expected to wait" if still_runs else "already holds a run; go on with it"
+    with pytest.raises(ConfigError, match=says):
+        train_command(["--preset", "smoke", "--out", str(tmp_path)])
+    theirs.release()
+    assert (tmp_path / "config.json").read_text() == "theirs"
+
+
+def test_a_folder_is_free_once_a_run_is_begun_there(tmp_path: Path) -> None:
+    lock = lock_folder(tmp_path)  # the same object, which would still be locked
+    lock.release()
+    checkpoint.start(tmp_path, TINY)
+    assert not lock.is_locked
+
+
+def test_a_run_is_resumed_from_what_another_process_left_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    checkpoint.start(tmp_path, TINY)
+    held = []
+
+    def resume(folder: Path, _: object) -> None:
+        held.append(FileLock(folder / ".lock", is_singleton=True).is_locked)
+        raise ConfigError("seen")
+
+    monkeypatch.setattr(checkpoint, "resume", resume)
+    with pytest.raises(ConfigError, match="seen"):
+        train_command(["--out", str(tmp_path), "--resume"])
+    assert held == [True]
 
 
 def test_half_written_checkpoint_is_ignored(tmp_path: Path) -> None:

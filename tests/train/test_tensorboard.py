@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import shlex
 import shutil
+import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -87,11 +89,42 @@ def test_what_is_saved_is_shown_even_after_a_kill(tmp_path: Path, monkeypatch: p
     assert seen == [[0], [0, 2], [0, 2, 4], [0, 2, 4, 6], [0, 2, 4, 6, 8]]
 
 
-def test_a_policy_is_saved_though_nothing_can_be_shown(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(*_: object) -> None:
+@pytest.mark.parametrize("moment", ["write", "flush", "close"])
+def test_training_goes_on_though_nothing_can_be_shown(
+    tmp_path: Path, moment: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(writer: Any, *_: object) -> None:
+        writer._writer.close()
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("torch.utils.tensorboard.SummaryWriter.flush", full)
-    with pytest.raises(OSError, match="No space"):
-        train_command([*ARGUMENTS, "--out", str(tmp_path)])
-    assert checkpoint.resume(tmp_path)[0].history[-1].update == 0
+    monkeypatch.setattr(f"torch.utils.tensorboard.RecordWriter.{moment}", full)
+    train_command([*ARGUMENTS, "--out", str(tmp_path)])
+    assert checkpoint.resume(tmp_path)[0].history[-1].update == 8
+    told = capsys.readouterr().err
+    log = tmp_path / "tensorboard"
+    assert told.count(f"{log}: there is no log for TensorBoard from here on (No space left on device)") == 1
+    assert "Traceback" not in told
+
+
+def test_training_does_without_tensorboard(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in [name for name in sys.modules if name.startswith("torch.utils.tensorboard")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, "tensorboard", None)
+    train_command([*ARGUMENTS, "--out", str(tmp_path)])
+    assert (tmp_path / "policy.safetensors").exists()
+    assert capsys.readouterr().err.count("there is no log for TensorBoard from here on") == 1
+
+
+def test_a_folder_that_goes_away_costs_no_weights(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    run, step = tmp_path / "run", Reinforce.step
+
+    def step_and_remove(self: Reinforce) -> object:
+        shutil.rmtree(run, ignore_errors=True)
+        return step(self)
+
+    monkeypatch.setattr(Reinforce, "step", step_and_remove)
+    train_command([*ARGUMENTS, "--out", str(run)])
+    assert (run / "policy.safetensors").exists()
+    assert checkpoint.resume(run)[0].update == 8
