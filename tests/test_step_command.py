@@ -189,6 +189,7 @@ def test_a_real_case(tmp_path: Path, capsys: Captured) -> None:
     assert "the mission is over: completed" in capsys.readouterr().out
 
 
+@pytest.mark.usefixtures("signals_heard")
 @pytest.mark.parametrize("number", [signal.SIGHUP, signal.SIGTERM])
 def test_a_lost_connection_saves_the_session(mission: str, tmp_path: Path, number: int) -> None:
     session = tmp_path / "session.json"
