@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from rich.cells import cell_len, set_cell_size
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.listed import listed
 from mrta_zoo.paths import composed
 
 LISTED = 8
@@ -71,8 +72,8 @@ def found(text: str, who: str, names: Sequence[str]) -> int:
     if not names:
         raise ConfigError(f"{who} is {text!r}; expected a whole number >= 0")
     number = ", or a number" if numbers_count(names) else ""
-    listed = ", ".join(names[:LISTED]) + (", …" if len(names) > LISTED else "")
-    raise ConfigError(f"there is no {who} {text!r}; expected a name{number}; the {who}s are {listed}")
+    known = listed(names[:LISTED]) + (", …" if len(names) > LISTED else "")
+    raise ConfigError(f"there is no {who} {text!r}; expected a name{number}; the {who}s are {known}")
 
 
 def shortened(name: str, most: int) -> str:
