@@ -387,10 +387,10 @@ OVERLAPPING = """() => {
 TORN = """() => [...document.querySelectorAll("footer span")].filter((entry) => {
   const words = document.createRange();
   words.selectNodeContents(entry.lastChild);
-  const [icon, line] = [entry.firstElementChild.getBoundingClientRect(), words.getClientRects()[0]];
-  return icon.right > line.left || icon.bottom < line.top || icon.top > line.bottom;
+  const icon = entry.firstElementChild.getBoundingClientRect(), lines = [...words.getClientRects()];
+  return lines.some((line) => icon.right > line.left) || icon.bottom < lines[0].top || icon.top > lines[0].bottom;
 }).map((entry) => entry.textContent)"""
-"""Entries of the legend whose icon is not on the first line of their words, before them."""
+"""Entries of the legend whose icon is not before their words, beside the first line."""
 
 
 @pytest.mark.parametrize("width", [360, 500, 1280, 1920])
