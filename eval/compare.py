@@ -212,14 +212,18 @@ def _fate(fate: Fate, index: int, scenario: Scenario) -> str:
 
 
 def _parted(parting: Parting, methods: tuple[str, str], scenario: Scenario) -> Group:
+    probable = [
+        index for index in range(2) if any(choice.probabilities[index] is not None for choice in parting.choices)
+    ]  # plans have none
+
     def row(method: str, choice: Alternative) -> tuple[object, ...]:
-        likely = [None if each is None else percent(each) for each in choice.probabilities]
+        likely = [None if each is None else percent(each) for each in (choice.probabilities[i] for i in probable)]
         return method, _task(choice.task, scenario), choice.distance, choice.finish, choice.slack, *likely
 
     return _listed(
         f"They part at decision {parting.index}, at {parting.time:.1f}, when {scenario.robot_name(parting.robot)} "
         "chooses",
-        ("method", "task", "distance", "finish", "slack", f"% {methods[0]}", f"% {methods[1]}"),
+        ("method", "task", "distance", "finish", "slack", *(f"% {methods[index]}" for index in probable)),
         [row(method, choice) for method, choice in zip(methods, parting.choices, strict=True)],
         2,
     )

@@ -86,7 +86,7 @@ def places_of_labels(
             left = x + (gap if right > 0 else -gap - width if right < 0 else -width / 2)
             bottom = y + (gap - 1.0 if up > 0 else 1.0 - gap - height if up < 0 else -height / 2)
             box = (left, bottom, left + width, bottom + height)
-            if left < 0 or bottom < 0 or box[2] > frame[0] or box[3] > frame[1] or _covers(box, boxes[:taken]):
+            if left < 0 or bottom < 0 or box[2] > frame[0] or box[3] > frame[1] or covers(box, boxes[:taken]):
                 continue
             boxes[taken] = box
             taken += 1
@@ -95,7 +95,8 @@ def places_of_labels(
     return found
 
 
-def _covers(box: tuple[float, float, float, float], others: FloatArray) -> bool:
+def covers(box: tuple[float, float, float, float], others: FloatArray) -> bool:
+    """Whether a box covers some of the others, each given as left, bottom, right, top."""
     left, bottom, right, top = box
     apart = (others[:, 2] <= left) | (others[:, 0] >= right) | (others[:, 3] <= bottom) | (others[:, 1] >= top)
     return not apart.all()

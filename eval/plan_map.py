@@ -5,12 +5,14 @@ Needs matplotlib (``mrta_zoo[plot]``), which it uses without its global state. S
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from mrta_zoo.eval.lettering import fitted, places_of_labels, round_number, text_width
+from mrta_zoo.eval.plan_starts import PAD, SIZE, StartLabel, start_labels
 from mrta_zoo.extras import require
 from mrta_zoo.palette import FAINT, INK, robot_colour
 from mrta_zoo.plan import Plan
@@ -32,7 +34,7 @@ MOST_NUMBERED = 150
 """Tasks on the map that still get their number, and robots that get a label of their own."""
 MARGIN = 0.035
 """Around the map, as a share of its longer side."""
-LABEL, START, TICK = 6.5, 8.0, 8.0
+LABEL, TICK = 6.5, 8.0
 """Sizes of text."""
 LONGEST = 60.0
 """Of a task's label."""
@@ -92,10 +94,10 @@ class RouteMap:
                          linewidths=0.8, zorder=4)  # fmt: skip
             axes.scatter(*self._xy(tasks[~completed]).T, s=1.6 * size, c=LATE, marker="x", linewidths=1.8, zorder=5)
         axes.scatter(*self._xy(~taken).T, s=0.7 * size, facecolors="white", edgecolors=FAINT, linewidths=1.0, zorder=3)
-        if self.scenario.num_robots <= MOST_NUMBERED:
-            self._draw_starts(axes)
+        starts = self._starts() if self.scenario.num_robots <= MOST_NUMBERED else []
+        self._draw_starts(axes, starts)
         if numbered:
-            self._draw_labels(axes, taken)
+            self._draw_labels(axes, taken, starts)
         axes.set_title("Routes (distance units)", fontsize=10, color=FAINT, loc="left")
 
     def _ticks(self, side: int) -> list[float]:
@@ -145,20 +147,30 @@ class RouteMap:
                     zorder=3,
                 )  # fmt: skip
 
-    def _draw_starts(self, axes: Any) -> None:
-        for robot, (x, y) in enumerate(self.scenario.robot_xy):
+    def _starts(self) -> list[StartLabel]:
+        return start_labels(
+            self._points(self.scenario.robot_xy), self.scenario.robot_names, self._marks(slice(None)), self.size
+        )
+
+    def _marks(self, which: Any) -> FloatArray:
+        """(N, 4) what the marks of tasks cover: left, bottom, right, top."""
+        tasks = self._points(self._xy(which))
+        return np.hstack((tasks - 2.5, tasks + 2.5))
+
+    def _draw_starts(self, axes: Any, starts: Sequence[StartLabel]) -> None:
+        for label in starts:
             axes.text(
-                x, y, str(robot), fontsize=START, fontweight="bold", color="white", ha="center", va="center_baseline",
-                zorder=9, bbox={"boxstyle": "square,pad=0.3", "facecolor": robot_colour(robot), "edgecolor": "white"},
+                *(self.scenario.robot_xy[label.robot] + np.array(label.shift) / self.scale), label.text, fontsize=SIZE,
+                fontweight="bold", color="white", ha="center", va="center_baseline", zorder=9,
+                bbox={"boxstyle": f"square,pad={PAD}", "facecolor": label.colour, "edgecolor": "white"},
             )  # fmt: skip
 
-    def _draw_labels(self, axes: Any, taken: Any) -> None:
+    def _draw_labels(self, axes: Any, taken: Any, starts: Sequence[StartLabel]) -> None:
         """Names or numbers of tasks where they have room; tasks that robots do go first."""
         order = np.argsort(~taken, kind="stable")
         names = [fitted(self.scenario.task_name(task), LONGEST, LABEL) for task in order.tolist()]
-        tasks, starts = self._points(self._xy(order)), self._points(self.scenario.robot_xy)
-        clear = np.concatenate((np.hstack((tasks - 2.5, tasks + 2.5)), np.hstack((starts - 7.0, starts + 7.0))))
-        found = places_of_labels(tasks, names, LABEL, clear, self.size)
+        clear = np.concatenate((self._marks(order), np.reshape([each.box for each in starts], (-1, 4))))
+        found = places_of_labels(self._points(self._xy(order)), names, LABEL, clear, self.size)
         for index, corner in found.items():
             if names[index]:
                 axes.text(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from mrta_zoo.counted import counted
 from mrta_zoo.eval.sheet import Sheet
 from mrta_zoo.left_out import Reason, left_out
+from mrta_zoo.listed import listed
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import COST, Score
@@ -58,4 +59,4 @@ def missed(scenario: Scenario, plan: Plan, score: Score) -> list[str]:
         for reason, words in WHY.items()
     }
     tasks["finished late"] = [visit.task for visits in score.schedule for visit in visits if not visit.completed]
-    return [f"{words}: {', '.join(map(scenario.task_name, which))}" for words, which in tasks.items() if which]
+    return [f"{words}: {listed(map(scenario.task_name, which))}" for words, which in tasks.items() if which]

@@ -3,9 +3,12 @@
 import gc
 import hashlib
 import os
+import signal
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
 import torch
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")  # windows that need no display
@@ -15,6 +18,18 @@ torch.set_num_threads(1)  # at the tests' sizes more threads only get in each ot
 _SOURCES = sorted((Path(__file__).parent.parent / "policies" / "local_search").glob("*.py"))
 _DIGEST = hashlib.sha256(b"".join(path.read_bytes() for path in _SOURCES)).hexdigest()[:16]
 os.environ["NUMBA_CACHE_DIR"] = str(Path(tempfile.gettempdir()) / f"mrta_zoo_numba_{_DIGEST}")
+
+
+@pytest.fixture
+def signals_heard() -> Iterator[None]:
+    """Ctrl-C and a lost connection reach this process and those it starts, though `nohup` or `&` has both ignored."""
+    usual = {signal.SIGINT: signal.default_int_handler}
+    if hasattr(signal, "SIGHUP"):  # not on Windows
+        usual[signal.SIGHUP] = signal.SIG_DFL
+    before = {number: signal.signal(number, handler) for number, handler in usual.items()}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
 
 
 def pytest_collection_finish() -> None:

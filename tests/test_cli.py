@@ -220,14 +220,18 @@ def test_as_a_module_in_a_pipe(cases: Path) -> None:
     assert result.stderr == ""
 
 
+@pytest.mark.usefixtures("signals_heard")
 def test_ctrl_c_ends_with_130(tmp_path: Path) -> None:
     folder = tmp_path / "cases"
     command = [sys.executable, "-m", "mrta_zoo", "generate", "--count", "1000000", "--out", str(folder)]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
-        while not any(tmp_path.rglob("*.txt")) and process.poll() is None:
-            pass
-        process.send_signal(signal.SIGINT)
-        _, complaint = process.communicate(timeout=60)
+        try:
+            while not any(tmp_path.rglob("*.txt")) and process.poll() is None:
+                pass
+            process.send_signal(signal.SIGINT)
+            _, complaint = process.communicate(timeout=60)
+        finally:
+            process.kill()
     assert (process.returncode, complaint) == (130, "interrupted\n")
     assert list(tmp_path.iterdir()) == []
 

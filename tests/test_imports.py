@@ -23,6 +23,7 @@ LAYERS = (
             "mrta_zoo.atomic",
             "mrta_zoo.bounds",
             "mrta_zoo.counted",
+            "mrta_zoo.listed",
             "mrta_zoo.fold",
             "mrta_zoo.extras",
             "mrta_zoo.palette",

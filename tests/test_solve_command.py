@@ -15,6 +15,7 @@ from factories import hopeless_scenario, named_scenario
 from mrta_zoo import extras
 from mrta_zoo.cli import main
 from mrta_zoo.io import json_format, read_plan, write_plan, write_scenario
+from mrta_zoo.listed import listed
 from mrta_zoo.plan import Plan
 
 NEAREST = """\
@@ -47,6 +48,15 @@ def test_names_and_reasons_are_printed(mission: Path, capsys: Captured) -> None:
     assert lines[0].pop() == "s"
     assert float(lines[0].pop()) < 5
     assert lines == [line.split() for line in NEAREST.splitlines()]
+
+
+def test_names_in_lists_are_told_apart(mission: Path, capsys: Captured) -> None:
+    names = ("pump A", "valve, main", 'mast "old"', '"fence"', "gate, 3")
+    write_scenario(replace(named_scenario(), task_names=names), mission)
+    assert main(["solve", str(mission), "--method", "nearest", "--mask-rule", "unvisited"]) == 0
+    assert '\nfinished late: "gate, 3", """fence"""\n' in capsys.readouterr().out
+    assert listed(names) == 'pump A, "valve, main", mast "old", """fence""", "gate, 3"'
+    assert listed(["fence W ", "\xa0x"]) == '"fence W ", "\xa0x"'
 
 
 def test_what_is_late_is_named(mission: Path, capsys: Captured) -> None:

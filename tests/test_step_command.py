@@ -182,6 +182,21 @@ def test_compare_prints_and_writes(mission: str, tmp_path: Path, capsys: Capture
     assert f"edf and {plan} do the same throughout" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    ("methods", "percents"),
+    [("PLAN,nearest", []), ("PLAN,capam-plus", ["% capam-plus"]), ("capam-plus,capam", ["% capam-plus", "% capam"])],
+)
+def test_who_has_no_probabilities_has_no_column_of_them(
+    methods: str, percents: list[str], mission: str, tmp_path: Path, capsys: Captured
+) -> None:
+    write_plan(Plan(((0,), (), ())), tmp_path / "plan.json")
+    assert main(["compare", mission, "--methods", methods.replace("PLAN", str(tmp_path / "plan.json"))]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    parted = next(index for index, line in enumerate(lines) if line.startswith("They part at"))
+    heading = next(line for line in lines[parted:] if line.split()[:1] == ["method"])
+    assert heading.split() == ["method", "task", "distance", "finish", "slack", *" ".join(percents).split()]
+
+
 def test_what_cannot_be_compared(mission: str, capsys: Captured) -> None:
     assert "expected two, such as" in fails(capsys, ["compare", mission, "--methods", "nearest"])
     assert "named twice" in fails(capsys, ["compare", mission, "--methods", "nearest,nearest"])
@@ -198,6 +213,7 @@ def test_a_real_case(tmp_path: Path, capsys: Captured) -> None:
     assert "the mission is over: completed" in capsys.readouterr().out
 
 
+@pytest.mark.usefixtures("signals_heard")
 @pytest.mark.parametrize("number", [signal.SIGHUP, signal.SIGTERM])
 def test_a_lost_connection_saves_the_session(mission: str, tmp_path: Path, number: int) -> None:
     session = tmp_path / "session.json"

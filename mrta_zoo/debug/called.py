@@ -6,11 +6,13 @@ meant would be a guess then.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from rich.cells import cell_len, set_cell_size
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.listed import listed
 from mrta_zoo.paths import composed
 
 LISTED = 8
@@ -39,12 +41,18 @@ def headings(who: str, names: Sequence[str]) -> tuple[str, ...]:
     return (who, "name") if names and numbers_count(names) else (who,)
 
 
-def find(text: str, names: Sequence[str]) -> int | None:
-    """The task or robot that a text means; None if it is neither a name nor a whole number."""
+def find(text: str, who: str, names: Sequence[str]) -> int | None:
+    """The task or robot that a text means by its name or its number, be it 2, "robot 2" or "robot_2"; None if neither.
+
+    Args:
+        text: what was typed.
+        who: "task" or "robot".
+        names: of all of them, empty if they have none.
+    """
     if (name := composed(text)) in names:
         return names.index(name)
-    number = text.isdecimal() and text.isascii() and len(text) <= DIGITS
-    return int(text) if number and numbers_count(names) else None
+    number = re.fullmatch(rf"(?:{who}[ _])?([0-9]{{1,{DIGITS}}})", text)
+    return int(number[1]) if number and numbers_count(names) else None
 
 
 def found(text: str, who: str, names: Sequence[str]) -> int:
@@ -58,19 +66,24 @@ def found(text: str, who: str, names: Sequence[str]) -> int:
     Raises:
         ConfigError: if it is neither a name nor a whole number that counts.
     """
-    index = find(text, names)
+    index = find(text, who, names)
     if index is not None:
         return index
     if not names:
         raise ConfigError(f"{who} is {text!r}; expected a whole number >= 0")
     number = ", or a number" if numbers_count(names) else ""
-    listed = ", ".join(names[:LISTED]) + (", …" if len(names) > LISTED else "")
-    raise ConfigError(f"there is no {who} {text!r}; expected a name{number}; the {who}s are {listed}")
+    known = listed(names[:LISTED]) + (", …" if len(names) > LISTED else "")
+    raise ConfigError(f"there is no {who} {text!r}; expected a name{number}; the {who}s are {known}")
 
 
 def shortened(name: str, most: int) -> str:
-    """A name in so many columns of a terminal."""
-    return name if cell_len(name) <= most else set_cell_size(name, most - 1).rstrip() + "…"
+    """A name in so many columns of a terminal, cut in the middle, as its ends tell names apart."""
+    if cell_len(name) <= most:
+        return name
+    tail = name
+    while tail and (cell_len(tail) > (most - 1) // 2 or not cell_len(tail[0])):  # which would be an accent alone
+        tail = tail[1:]
+    return f"{set_cell_size(name, most - 1 - cell_len(tail)).rstrip()}…{tail.lstrip()}"
 
 
 def without_comment(line: str, names: Sequence[str]) -> str:

@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from rich.cells import cell_len
+
 from mrta_zoo.counted import counted
-from mrta_zoo.debug.called import called, cells, headings
+from mrta_zoo.debug.called import called, cells, headings, shortened
 from mrta_zoo.debug.outlook import SortKey
 from mrta_zoo.debug.percent import percent
 from mrta_zoo.debug.stepper import Stepper
@@ -41,10 +43,18 @@ class Row:
     Attributes:
         cells: its text.
         tone: "advised", "made", "plain", or "faint" for what may not be chosen or is over.
+        name: the one in its last cell that may be shortened, if any.
     """
 
     cells: tuple[str, ...]
     tone: str = "plain"
+    name: str = ""
+
+    def note(self, most: int, least: int) -> str:
+        """Its last cell, in so many columns if that can be had by shortening the name, though not below `least`."""
+        text = self.cells[-1]
+        room = cell_len(self.name) - (cell_len(text) - most)
+        return text.replace(self.name, shortened(self.name, max(room, least)), 1) if self.name else text
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +115,8 @@ def _tasks(stepper: Stepper, view: View) -> Listing:
             *((share if free else "",) if probable else ()),
             str(each),
         )
-        rows.append(Row(row, "advised" if advised else "made" if chosen else "plain" if free else "faint"))
+        tone = "advised" if advised else "made" if chosen else "plain" if free else "faint"
+        rows.append(Row(row, tone, each.who if scenario.robot_names else ""))
     when = "" if own else " when it is next free"
     title = f"{scenario.robot_name(robot)} may choose {choices} of {counted(len(rows), 'task')}{when}"
     numbers = ("dist", "travel", "finish", "slack", "due", *(("prob %",) if probable else ()))
@@ -131,7 +142,8 @@ def _robots(stepper: Stepper) -> Listing:
             f"{scenario.capacity[robot]:g}", f"{scenario.speed[robot]:g}",
             str(len(route)), f"{mission.ready[robot]:.1f}", str(int(mission.mask(robot).sum())), doing,
         )  # fmt: skip
-        rows.append(Row(row, "advised" if now.doing == "acting" else "faint" if now.doing == "retired" else "plain"))
+        tone = "advised" if now.doing == "acting" else "faint" if now.doing == "retired" else "plain"
+        rows.append(Row(row, tone, _named(mission.heading[robot], scenario.task_names)))
     robots = headings("robot", scenario.robot_names)
     columns = (*robots, "place", "capacity", "speed", "taken", "free at", "choices", "")
     spare = ("speed", "place", "capacity", "taken", "choices")
@@ -155,11 +167,17 @@ def _log(stepper: Stepper) -> Listing:
             "" if finish is None else f"{finish:.1f}",
             "" if finish is None or task is None else f"{scenario.deadline[task] - finish:.1f}", words,
         )  # fmt: skip
-        rows.append(Row(row, "plain" if choice.advice is None else "made"))
+        tone = "plain" if choice.advice is None else "made"
+        rows.append(Row(row, tone, _named(choice.advice, scenario.task_names)))
     columns = ("decision", "time", "robot", "task", "finish", "slack", "")
     texts = (*_texts(("robot",), scenario.robot_names), *_texts(("task",), scenario.task_names))
     title = f"{counted(len(rows), 'decision')} so far, the last one first"
     return Listing(title, columns, texts, rows[::-1], ("time", "finish", "slack", "robot"))
+
+
+def _named(index: int | None, names: Sequence[str]) -> str:
+    """The name of a task, if there is such a task and it has one."""
+    return names[index] if names and index is not None and index >= 0 else ""
 
 
 def _texts(headings: tuple[str, ...], names: Sequence[str]) -> tuple[str, ...]:

@@ -9,7 +9,7 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from mrta_zoo.debug.called import called, shortened
+from mrta_zoo.debug.called import shortened
 from mrta_zoo.debug.pages import Listing
 from mrta_zoo.debug.session import Session
 from mrta_zoo.fold import clipped
@@ -19,12 +19,12 @@ from mrta_zoo.scenario import Scenario
 AROUND = 11
 """Lines of a screen besides the rows of the table: the header, the table's title, head and foot, message and prompt."""
 LEAST_ROWS = 3
-BETWEEN = 2
-"""Columns between two of a table."""
+BETWEEN, TIGHT = 2, 1
+"""Columns between two of a table, and where there is no room for that."""
 STYLES = {"advised": "bold green", "made": "yellow", "plain": "", "faint": "bright_black"}
 NEXT_SHOWN = 8
-NOTE, NAME, LEAST_NOTE = 24, 10, 12
-"""Columns that notes keep until names are cut, that names keep until notes are cut further, and that notes keep."""
+NAME, LEAST_NAME, LEAST_NOTE = 10, 6, 12
+"""Columns that names keep until those in notes are cut, that all names keep, and that notes keep."""
 
 
 def screen(session: Session, rows: int, width: int, message: str = "") -> Group:
@@ -48,7 +48,7 @@ def header(session: Session, width: int) -> list[RenderableType]:
     place = f"decision {stepper.position}" + (f"/{len(stepper)}" if stepper.position < len(stepper) else "")
     lines = [
         (
-            f"{scenario.name}: {scenario.size}, {stepper.mask_rule}",
+            f"{scenario.name}: {scenario.size}, mask rule {stepper.mask_rule}",
             "bold",
         ),
         (
@@ -60,7 +60,7 @@ def header(session: Session, width: int) -> list[RenderableType]:
     if stepper.done:
         lines += [(session.where(), "bold"), ("", "")]
     else:
-        lines += [(_turn(session), "bold cyan"), (_queue(session), "bright_black")]
+        lines += [(_turn(session, width), "bold cyan"), (_queue(session, width), "bright_black")]
     return [Text(clipped(line, width), style=style) for line, style in lines]
 
 
@@ -69,43 +69,60 @@ def table(session: Session, rows: int, width: int) -> list[RenderableType]:
     listing, view = session.listing(), session.view
     pages = max(-(-len(listing.rows) // rows), 1)
     view.page = min(view.page, pages - 1)
-    shown = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
     first = view.page * rows
     page = listing.rows[first : first + rows]
-    widths = column_widths(listing, width)
+    widths, between = column_widths(listing, width)
+    shown = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, between - TIGHT, 0, 0))
     for index, needed in widths.items():
         column = listing.columns[index]
         shown.add_column(column, justify="left" if column in listing.left else "right", no_wrap=True, width=needed)
     for row in page:
-        *cells, note = (row.cells[index] for index in widths)
-        shown.add_row(*map(Text, cells), Text(clipped(note, [*widths.values()][-1])), style=STYLES[row.tone])
+        cells = [
+            clipped(row.note(needed, LEAST_NAME), needed) if index == len(row.cells) - 1
+            else shortened(row.cells[index], needed)
+            for index, needed in widths.items()
+        ]  # fmt: skip
+        shown.add_row(*map(Text, cells), style=STYLES[row.tone])
     foot = f"page {view.page + 1} of {pages}" + ("" if view.page == pages - 1 else ", n: next") if pages > 1 else ""
     title, foot = (clipped(text, width) for text in (listing.title, foot))
     return [Text(title, style="italic"), shown, Text(foot, style="bright_black")]
 
 
-def column_widths(listing: Listing, width: int) -> dict[int, int]:
-    """The columns that there is room for, with their widths.
+def column_widths(listing: Listing, width: int) -> tuple[dict[int, int], int]:
+    """The columns that there is room for with their widths, and the room between two.
 
-    Numbers have what they need. Where there is no room, first the notes in the last column are cut, then names; then
-    columns are left out, those that can be spared first.
+    Numbers have what they need. Where there is no room, first names are shortened, those in notes, too; then columns
+    are left out, those that can be spared first; then the notes in the last column are cut.
     """
-    widths = {
+    needed = {
         index: max(cell_len(cell) for cell in (column, *(row.cells[index] for row in listing.rows)))
         for index, column in enumerate(listing.columns)
     }
-    last = len(widths) - 1
+    last = len(needed) - 1
     names = [index for index, column in enumerate(listing.columns) if column in listing.left and 0 < index < last]
+    readable = max((cell_len(row.note(0, LEAST_NAME)) for row in listing.rows), default=0)
 
     def over() -> int:
-        return max(0, sum(widths.values()) + BETWEEN * (len(widths) - 1) - width)
+        return max(0, sum(widths.values()) + between * (len(widths) - 1) - width)
 
-    for index, least in ((last, NOTE), *((name, NAME) for name in names), (last, LEAST_NOTE)):
+    def narrow(index: int, least: int) -> None:
         widths[index] -= min(over(), max(widths[index] - least, 0))
-    for column in (*listing.spare, listing.columns[last]):
+
+    for between in (BETWEEN, TIGHT):
+        widths = dict(needed)
+        for name in names:
+            narrow(name, NAME)
+        if not over():
+            return widths, between
+    for index, least in ((last, readable), *((name, LEAST_NAME) for name in names)):
+        narrow(index, least)
+    for column in listing.spare:
         if over():
-            del widths[last if column == listing.columns[last] else listing.columns.index(column)]
-    return widths
+            del widths[listing.columns.index(column)]
+    narrow(last, LEAST_NOTE)
+    if over():
+        del widths[last]
+    return widths, between
 
 
 def prompt(session: Session) -> str:
@@ -114,31 +131,37 @@ def prompt(session: Session) -> str:
     if advice is None:
         return "? help, q quit > "
     scenario = session.stepper.scenario
-    chosen = _choice(scenario, advice.task, 12)
+    chosen = "stay" if advice.task is None else _task(scenario, advice.task, 12)
     other = "name" if scenario.task_names else "number"
     return f"Enter: {chosen}, or {other}; b back, f forward, ? help, q quit > "
 
 
-def _turn(session: Session) -> str:
+def _turn(session: Session, width: int) -> str:
+    """Who chooses, and what its policy thinks; what has no room is left out, beginning with the speed."""
     stepper = session.stepper
-    robot, scenario = stepper.robot, stepper.scenario
+    robot, scenario, advice = stepper.robot, stepper.scenario, stepper.advice
     x, y = stepper.mission.position[robot]
-    what = ""
-    if (advice := stepper.advice) is not None:
-        what = f"; {stepper.method or 'policy'}: {_choice(scenario, advice.task, 16)}"
-    return (
-        f"{shortened(scenario.robot_name(robot), 16)} chooses{what}; at ({x:.1f}, {y:.1f}), "
-        f"capacity {scenario.capacity[robot]:.3g}, speed {scenario.speed[robot]:.3g}"
-    )
+    who = shortened(scenario.robot_name(robot), 16)
+    about = [
+        f" at ({x:.1f}, {y:.1f})",
+        f"capacity {scenario.capacity[robot]:.3g}",
+        f"speed {scenario.speed[robot]:.3g}",
+    ]
+    what = "chooses"
+    if advice is not None:
+        chosen = "to stay" if advice.task is None else _task(scenario, advice.task, 16)
+        what += f"; {shortened(stepper.method or 'the policy', 24)} advises {chosen}"
+    lines = [f"{who}{', '.join(about[:told])}, {what}" for told in (3, 2, 1)]
+    return next((line for line in lines if cell_len(line) <= width), f"{who} {what}")
 
 
-def _choice(scenario: Scenario, task: int | None, most: int) -> str:
-    """A choice, the task's name in so many columns."""
-    return "stay" if task is None else f"task {shortened(scenario.task_name(task), most)}"
+def _task(scenario: Scenario, task: int, most: int) -> str:
+    """A task's name in so many columns, or its number."""
+    return shortened(scenario.task_name(task), most) if scenario.task_names else f"task {task}"
 
 
-def _queue(session: Session) -> str:
-    """Who chooses after the acting robot."""
+def _queue(session: Session, width: int) -> str:
+    """Who chooses after the acting robot, as many as there is room for."""
     mission = session.stepper.mission
     waiting = sorted(
         (ready, robot)
@@ -147,6 +170,6 @@ def _queue(session: Session) -> str:
     )
     if not waiting:
         return "the only robot left"
-    names = mission.scenario.robot_names
-    text = ", ".join(f"{shortened(called(robot, names), 16)} at {ready:.1f}" for ready, robot in waiting[:NEXT_SHOWN])
-    return f"next robots: {text}" + (", …" if len(waiting) > NEXT_SHOWN else "")
+    each = [f"{shortened(mission.scenario.robot_name(robot), 16)} at {ready:.1f}" for ready, robot in waiting]
+    lines = [f"next: {', '.join(each)}", *(f"next: {', '.join(each[:some])}, …" for some in range(NEXT_SHOWN, 0, -1))]
+    return next((line for line in lines if cell_len(line) <= width), lines[-1])

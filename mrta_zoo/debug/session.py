@@ -67,7 +67,7 @@ class Session:
         names = self.stepper.scenario.task_names
         name, argument = [*line.split(maxsplit=1), ""][:2]
         command = _BY_NAME.get(name.lower())
-        if find(line, names) is not None:
+        if find(line, "task", names) is not None:
             if command is not None:
                 other = next((each for each in (command.short, command.name) if each and each not in names), "")
                 expected = f"take {line} for the task" + (f", or {other} for the command" if other else "")

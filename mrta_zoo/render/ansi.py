@@ -6,6 +6,7 @@ import numpy as np
 from rich.cells import cell_len
 
 from mrta_zoo.counted import counted
+from mrta_zoo.listed import listed
 from mrta_zoo.mission import Mission
 from mrta_zoo.render.whereabouts import whereabouts
 from mrta_zoo.rules import Status
@@ -56,8 +57,8 @@ def _trail(mission: Mission, robot: int) -> str:
     route = mission.routes[robot]
     behind = route[:-1] if mission.heading[robot] >= 0 else route
     earlier = "… " if len(behind) > _LONGEST_TRAIL else ""
-    separator = ", " if mission.scenario.task_names else " "  # names may hold blanks
-    return earlier + separator.join(map(mission.scenario.task_name, behind[-_LONGEST_TRAIL:])) or "-"
+    trail = [mission.scenario.task_name(task) for task in behind[-_LONGEST_TRAIL:]]
+    return earlier + (listed(trail) if mission.scenario.task_names else " ".join(trail)) or "-"
 
 
 def _doing(mission: Mission, robot: int, doing: str) -> str:

@@ -73,10 +73,11 @@ class Side {
     for (const [name, kind] of Object.entries(columns)) head.append(element("th", name, { class: kind }));
     body.append(...decision.candidates.map((candidate) => this.row(candidate, decision)));
     table.append(head, body);
+    const which = this.times.length > 1 ? `of 0–${this.times.length - 1}` : "(the only one)"; // they count from 0
     this.decision.replaceChildren(
-      element("b", `Decision ${last} (of ${this.times.length}): ${place.robot_names[decision.robot]} ${what} at ` +
+      element("b", `Decision ${last} ${which}: ${place.robot_names[decision.robot]} ${what} at ` +
         `${number(decision.time)}${advice}`),
-      element("p", decision.reasons.map((count, reason) => `${count} ${REASONS[reason]}`).join(", ") +
+      element("p", decision.reasons.map((count, reason) => count && `${count} ${REASONS[reason]}`).filter(Boolean).join(", ") +
         `; ${decision.candidates.length} of them listed`, { class: "faint" }),
       table,
     );

@@ -122,7 +122,9 @@ def check_decision(page: OpenPage, side: int, index: int) -> None:
     """That heading, clock, table, and marks on map and chart are those of a decision."""
     trace = TRACES[side]
     decision = trace.decisions()[index]
-    heading = f"Decision {index} (of {len(trace.choices)}): robot {decision.robot} takes task {decision.choice.task} at"
+    heading = (
+        f"Decision {index} of 0–{len(trace.choices) - 1}: robot {decision.robot} takes task {decision.choice.task} at"
+    )
     assert page.decision(side).startswith(heading)
     assert float(page.texts("#clock")[0].removeprefix("time ")) == pytest.approx(decision.time, abs=0.06)
     chosen = page.tab.locator(f"#side-{side} tr.chosen")
@@ -204,8 +206,9 @@ def test_the_table_tells_why_a_task_may_not_be_chosen(page):
     mission, decision = TRACES[0].mission(index), TRACES[0].decisions()[index]
     page.tab.evaluate(f"pick(0, {index})")
     counts = np.bincount(mission.reasons(decision.robot), minlength=4)
+    assert counts[2] == 0  # which is left out
     assert page.texts("#side-0 .decision p") == [
-        f"{counts[0]} to choose from, {counts[1]} taken, {counts[2]} deadline passed, {counts[3]} too late; "
+        f"{counts[0]} to choose from, {counts[1]} taken, {counts[3]} too late; "
         f"{page.tab.locator('#side-0 .decision tbody tr').count()} of them listed"
     ]
     reasons = " ".join(page.texts("#side-0 tr.barred"))
@@ -321,7 +324,7 @@ def test_an_episode_that_breaks_off(browser, tmp_path, choices):
     page = OpenPage(browser, (tmp_path / "cut.html").as_uri())
     assert page.tab.locator("#strip-0 i").count() == choices
     if choices:
-        assert page.decision(0).startswith("Decision 1 (of 3)")  # the bookmark
+        assert page.decision(0).startswith("Decision 1 of 0–2: ")  # the bookmark
     else:
         assert page.texts("#side-0 .decision p") == ["No decision has been made yet."]
     page.slide(50)
@@ -381,6 +384,13 @@ OVERLAPPING = """() => {
   }));
   return found;
 }"""
+TORN = """() => [...document.querySelectorAll("footer span")].filter((entry) => {
+  const words = document.createRange();
+  words.selectNodeContents(entry.lastChild);
+  const icon = entry.firstElementChild.getBoundingClientRect(), lines = [...words.getClientRects()];
+  return lines.some((line) => icon.right > line.left) || icon.bottom < lines[0].top || icon.top > lines[0].bottom;
+}).map((entry) => entry.textContent)"""
+"""Entries of the legend whose icon is not before their words, beside the first line."""
 
 
 @pytest.mark.parametrize("width", [360, 500, 1280, 1920])
@@ -391,11 +401,12 @@ def test_no_text_is_cut_or_on_another(browser, tmp_path, width, count):
     page = OpenPage(browser, (tmp_path / "named.html").as_uri() + "#5", width=width, height=720)
     assert page.tab.evaluate("document.documentElement.scrollWidth") <= width
     assert page.tab.evaluate(OVERLAPPING) == []
-    assert page.decision(0).startswith("Decision 5 (of ")
+    assert page.decision(0).startswith("Decision 5 of 0–")
     named = page.tab.locator("#side-0 .labels text").all_text_contents()
     assert len(named) > 12
     assert "V-1" in named
     assert page.tab.evaluate("end") < 1000
+    assert page.tab.evaluate(TORN) == []
     page.tab.set_viewport_size({"width": 700, "height": 800})
     page.tab.wait_for_function("sides[0].map.width === sides[0].map.box.clientWidth")
     assert page.tab.evaluate(OVERLAPPING) == []

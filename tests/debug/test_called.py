@@ -11,9 +11,10 @@ from factories import named_scenario
 from rich.cells import cell_len
 from rich.console import Console
 
+from mrta_zoo import Scenario
 from mrta_zoo.debug import Stepper
 from mrta_zoo.debug.called import without_comment
-from mrta_zoo.debug.screen import prompt
+from mrta_zoo.debug.screen import header, prompt
 from mrta_zoo.debug.session import Session
 from mrta_zoo.debug.terminal import run_script
 from mrta_zoo.errors import ActionError, ConfigError
@@ -78,24 +79,76 @@ def test_robots_by_name() -> None:
 def test_what_is_shown() -> None:
     steps = session()
     output = scripted(steps, "show # as it stands\ntake pump #3 <b>  # by name\nlog\nrobots\nend")
-    assert "Ann chooses; nearest: task valve-A; at (0.0, 0.0)" in output
-    assert "next robots: Bob & Co at 0.0" in output
+    assert "Ann at (0.0, 0.0), capacity 1, speed 1, chooses; nearest advises valve-A" in output
+    assert "next: Bob & Co at 0.0" in output
     rows = [line for line in output.splitlines() if line.startswith((">     0  valve-A ", "      3  弁[red] "))]
     assert [row.split() for row in rows] == [
         [">", "0", "valve-A", "10.0", "10.0", "15.0", "5.0", "20.0", "nobody", "else", "in", "time"],
         ["3", "弁[red]", "100.0", "100.0", "100.0", "-80.0", "20.0", "too", "late", "by", "80.0"],
     ]
     assert len({cell_len(row[: re.search(r"\d\.0 ", row).end()]) for row in rows}) == 1  # type: ignore[union-attr]
-    assert "\n       0   0.0  Ann    pump #3 <b>    40.0   10.0  the policy's choice was task…\n" in output
-    assert "\n    1  Bob & Co  (100.0, 0.0)  " in output
-    assert prompt(session()).startswith("Enter: task valve-A, or name; ")
+    assert "\n       0  0.0 Ann   pump…<b>     40.0  10.0 the policy's choice was task valve-A\n" in output
+    assert re.search(r"\n    1 Bob & Co +\(100\.0, 0\.0\) .* chooses now\n", output)
+    assert prompt(session()).startswith("Enter: valve-A, or name; ")
+
+
+@pytest.mark.parametrize("line", ["1", "robot 1", "robot_1"])
+def test_robots_by_number(line: str) -> None:
+    for steps in (session(), Session(Stepper(replace(NAMED, robot_names=()), "nearest"))):
+        assert steps.do(f"jump {line}").startswith("decision 1: ")
+        assert steps.stepper.robot == 1
+        steps.do(f"tasks {line}")
+        assert steps.listing().title.endswith("when it is next free") == (steps.stepper.robot != 1)
+    names = {"robot_names": ("robot_1", "robot 0")}
+    steps = Session(Stepper(replace(NAMED, **names), "nearest"))
+    assert steps.do("jump robot 0") == "decision 1: robot 0 chooses at 0.0"  # a name counts before a number
+
+
+SITE = Scenario(
+    task_xy=[[10.0 + 5 * index, 30.0] for index in range(12)],
+    deadline=[150.0] * 11 + [5.0],
+    workload=[10.0] * 12,
+    robot_xy=[[100.0, 30.0], [0.0, 30.0], [0.0, 30.0]],
+    capacity=[2.0, 1.0, 1.5],
+    speed=[1.5, 1.0, 1.0],
+    name="site",
+    task_names=tuple(f"transformer station {index}" for index in range(12)),
+    robot_names=("Spot", "Husky (the spare one)", "Ann"),
+)
+
+
+def test_reasons_are_read_at_80_columns() -> None:
+    steps = Session(Stepper(SITE, "capam-plus"))
+    output = scripted(steps, "show 12\nf 2\nshow 12")
+    lines = output.splitlines()
+    assert all(cell_len(line) <= 80 for line in lines)
+    assert "site: 12 tasks, 3 robots, mask rule feasible" in lines
+    assert any(
+        re.match(r"Spot at \(100\.0, 30\.0\), capacity 2, .*chooses; capam-plus advises trans", line) for line in lines
+    )
+    tables = [line for line in lines if re.match(r"[* ]?[> ]? +\d+ trans", line)]
+    assert len(tables) == 24
+    reason = r"(could by|done by .* at|on it until|too late by) \d+\.\d$|nobody else in time$|deadline passed$"
+    for line in tables:
+        assert re.match(r"[*> ]+\d+ t\S*(…| )\S* *\d+( +-?[\d.]+){4,}", line), line
+        assert re.search(reason, line), line
+    assert any(re.search(r"Hus\S*\) could by", line) for line in tables)  # its ends tell a name from others
+
+
+def test_a_narrow_header_leaves_out_what_can_be_spared() -> None:
+    steps = Session(Stepper(SITE, "nearest"))
+    for width, told in ((100, "capacity 2, speed 1.5, "), (76, "capacity 2, "), (64, "")):
+        line = header(steps, width)[2].plain  # type: ignore[union-attr]
+        assert line == f"Spot at (100.0, 30.0), {told}chooses; nearest advises transfor…tion 10", width
+    assert header(steps, 50)[2].plain == "Spot chooses; nearest advises transfor…tion 10"  # type: ignore[union-attr]
+    assert header(steps, 40)[3].plain == "next: Husky (t…re one) at 0.0, …"  # type: ignore[union-attr]
 
 
 def test_long_names_leave_numbers_whole() -> None:
     long = session("valve " * 20, "w" * 90, "x" * 90, "y" * 90, "z" * 90)
     output = scripted(long, "show")
     assert all(cell_len(line) <= 80 for line in output.splitlines())
-    assert re.search(r"\n>     0  valve.*…   10\.0    10\.0    15\.0    5\.0  20\.0  nobody else in time\n", output)
+    assert re.search(r"\n>     0  valve.*….*  10\.0    10\.0    15\.0    5\.0  20\.0  nobody else in time\n", output)
 
 
 @pytest.mark.parametrize(

@@ -148,7 +148,9 @@ def test_a_script_prints_the_same_always() -> None:
     assert output == scripted(script)
     assert "\x1b" not in output
     assert all(line == line.rstrip() and len(line) <= 80 for line in output.split("\n"))
-    assert output.startswith("> show 3\nsmall: 12 tasks, 3 robots, feasible\ntime 0.0  decision 0  0 completed, ")
+    assert output.startswith(
+        "> show 3\nsmall: 12 tasks, 3 robots, mask rule feasible\ntime 0.0  decision 0  0 completed, "
+    )
     assert "\n> 5\ndecision 1: robot 1 takes task 5, until " in output
     assert "\n> log\n2 decisions so far, the last one first\n" in output
     assert "the mission is over: completed " in output.split("> show\n")[1]

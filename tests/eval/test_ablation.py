@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import os
 import shlex
 import signal
 import subprocess
@@ -136,10 +135,12 @@ def test_killed_and_resumed_in_processes_it_gives_the_same_rows(straight: Path, 
     process = subprocess.Popen(
         [sys.executable, "-m", "mrta_zoo", *arguments], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL
     )
-    until = time.monotonic() + 180
-    while not list(out.glob("runs/*/rows.csv")) and time.monotonic() < until:
-        time.sleep(0.01)
-    os.kill(process.pid, signal.SIGKILL)
+    try:
+        until = time.monotonic() + 180
+        while not list(out.glob("runs/*/rows.csv")) and time.monotonic() < until:
+            time.sleep(0.01)
+    finally:
+        process.kill()
     assert process.wait() == -signal.SIGKILL
     done = len(list(out.glob("runs/*/rows.csv")))
     assert 1 <= done < 6

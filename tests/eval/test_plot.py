@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import importlib
+import re
 import sys
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +18,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+from matplotlib.transforms import Bbox
 
 from mrta_zoo.errors import ConfigError, MissingExtraError, PlanError
 from mrta_zoo.eval.lettering import text_width
@@ -220,3 +223,41 @@ def test_one_late_deadline_does_not_squash_the_chart() -> None:
     assert max(way[-1][0] for way in lines_to_deadlines(figure)) == pytest.approx(end / 1.012)
     easy = replace(SCENARIO, deadline=[1e9, 1e9, 1e9])
     assert draw_plan(easy, PLAN).axes[1].get_xlim()[1] < 100  # twice the 40 that it takes
+
+
+def starts(scenario: Scenario) -> list[tuple[str, str, Bbox]]:
+    """The labels of robots on the map: what they say, their ground, and what they cover in pixels."""
+    figure = draw_plan(scenario, Plan.of([()] * scenario.num_robots))
+    figure.draw_without_rendering()
+    labels = [text for text in figure.axes[0].texts if text.get_bbox_patch() is not None]
+    return [
+        (text.get_text(), to_hex(text.get_bbox_patch().get_facecolor()), text.get_bbox_patch().get_window_extent())
+        for text in labels
+    ]
+
+
+@pytest.mark.parametrize("apart", [0.0, 1.0])
+@pytest.mark.parametrize("names", [(), ("Spot", "Husky", "Ann", "a name that is far too long for any map to hold it")])
+def test_robots_that_start_at_one_place_are_all_seen(names: tuple[str, ...], apart: float) -> None:
+    places = np.array([(50.0, 50.0), (50.0, 50.0 + apart), (50.0 + apart, 50.0), (10.0, 50.0)])
+    found = starts(replace(SCENARIO, robot_xy=places, capacity=np.ones(4), speed=np.ones(4), robot_names=names))
+    assert [ground for _, ground, _ in found] == [to_hex(robot_colour(robot)) for robot in range(4)]
+    texts = [text for text, _, _ in found]
+    assert texts[:3] == list(names[:3] or "012")
+    assert re.fullmatch(r"a n.*….* it" if names else "3", texts[3])
+    boxes = [box.shrunk(0.95, 0.95) for _, _, box in found]
+    assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
+
+
+def test_where_a_name_has_no_room_there_is_a_number() -> None:
+    around = [(x, y) for x in range(40, 61, 2) for y in range(40, 61, 2) if (x, y) != (50, 50)]
+    crowd = Scenario(
+        task_xy=around, deadline=[90] * len(around), workload=[1] * len(around), robot_xy=[(50, 50), (90, 10)],
+        capacity=[1, 1], robot_names=("Spot", "Husky"),
+    )  # fmt: skip
+    assert [text for text, _, _ in starts(crowd)] == ["0", "Husky"]
+
+
+def test_of_a_whole_fleet_at_one_place_there_is_the_number() -> None:
+    fleet = replace(SCENARIO, robot_xy=np.full((20, 2), 50.0), capacity=np.ones(20), speed=np.ones(20))
+    assert [text for text, _, _ in starts(fleet)] == ["20 robots"]

@@ -26,6 +26,7 @@ BUDGET = 20.0
 AT_ONCE = 4.0
 """Seconds; far less than the budget, and more than a busy machine needs."""
 
+pytestmark = pytest.mark.usefixtures("signals_heard")
 needs_kill = pytest.mark.skipif(os.name == "nt", reason="os.kill ends the process there")
 
 

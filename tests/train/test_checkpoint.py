@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import shlex
 import signal
 import subprocess
@@ -75,10 +74,12 @@ def test_killed_run_resumes_to_the_same_bits(tmp_path: Path) -> None:
     killed = tmp_path / "killed"
     command = [sys.executable, "-m", "mrta_zoo.train.cli", *arguments, "--out", str(killed)]
     process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
-    until = time.monotonic() + 60
-    while not (killed / "checkpoints" / "00000003").exists() and time.monotonic() < until:
-        time.sleep(0.01)
-    os.kill(process.pid, signal.SIGKILL)
+    try:
+        until = time.monotonic() + 60
+        while not (killed / "checkpoints" / "00000003").exists() and time.monotonic() < until:
+            time.sleep(0.01)
+    finally:
+        process.kill()
     assert process.wait() == -signal.SIGKILL
     train_command(["--out", str(killed), "--resume", "--threads", "1"])
     for file in ("policy.safetensors", "history.csv", "checkpoints/00000012/network.safetensors"):
