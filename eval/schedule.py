@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from mrta_zoo.counted import counted
 from mrta_zoo.eval.sheet import Sheet
 from mrta_zoo.left_out import Reason, left_out
@@ -19,13 +21,13 @@ WHY: dict[Reason, str] = {
 def schedule_table(scenario: Scenario, score: Score) -> Sheet:
     """A row for each task that is done, robot by robot; times in time units. What has no name is counted from 0."""
     rows: list[tuple[str, ...]] = []
-    ends = []
+    ends, digits = [], decimals(score.makespan, 2)
     for robot, visits in enumerate(score.schedule):
         name = scenario.robot_name(robot)
         if not visits:
             rows.append((name, "-", "-", "-", "-", "stays where it is"))
         for visit in visits:
-            times = (f"{visit.arrival:.2f}", f"{visit.finish:.2f}", f"{visit.deadline:g}")
+            times = (f"{visit.arrival:.{digits}f}", f"{visit.finish:.{digits}f}", f"{visit.deadline:g}")
             rows.append((name, scenario.task_name(visit.task), *times, "" if visit.completed else "late"))
         ends.append(len(rows) - 1)
     left = ("robot", "", *(("task",) if scenario.task_names else ()))
@@ -41,6 +43,11 @@ def proven(score: Score, bound: int | None) -> str:
     return f"not proven optimal: it may be; no plan completes more than {counted(bound, 'task')}"
 
 
+def decimals(largest: float, least: int) -> int:
+    """Digits after the point that leave the largest of some numbers three digits that count, but `least` of them."""
+    return max(least, 2 - math.floor(math.log10(largest))) if largest > 0 else least
+
+
 def totals(score: Score) -> str:
     """All scores, on three lines."""
     visited = sum(len(visits) for visits in score.schedule)
@@ -48,7 +55,8 @@ def totals(score: Score) -> str:
         f"completed {score.completed} of {counted(score.tasks, 'task')} ({100 * score.completion:.1f} %), "
         f"{visited - score.completed} late, {score.tasks - visited} not taken\n"
         f"cost {score.cost:.3f} ({COST})\n"
-        f"distance {score.distance:.1f}, makespan {score.makespan:.1f}"
+        f"distance {score.distance:.{decimals(score.distance, 1)}f}, "
+        f"makespan {score.makespan:.{decimals(score.makespan, 1)}f}"
     )
 
 

@@ -21,6 +21,9 @@ FloatArray = npt.NDArray[np.float64]
 SMALLEST, LARGEST = 1e-12, 1e12
 """What a positive quantity may be: times and distances made of such numbers neither overflow nor vanish."""
 # Besides what steers terminals, what turns round all that follows, in browsers, too.
+UNSAID = (math.nan, math.nan)
+"""A map's size or origin that follows from the places on it."""
+DEFAULT_SIZE = (100.0, 100.0)
 _UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 BOUNDS = f", from {SMALLEST:g} to {LARGEST:g}"
 
@@ -40,7 +43,8 @@ class Scenario:
         robot_xy: (M, 2) places where the robots start at time 0, inside the map.
         capacity: (M,) work done per time unit, > 0.
         speed: (M,) distance travelled per time unit, > 0; 1 for every robot by default.
-        map_size: width and height of the map, > 0.
+        map_size: width and height of the map, > 0. By default 100 and 100 or, if that does not hold every place, those
+            of the square that does, see `square_around`.
         name: what files, tables and pictures call this scenario.
         map_origin: the map's lowest x and y, which may be negative. By default 0 and 0 or, where the map would not
             hold every place then, the least whole x and y of all places, see `map_origin_for`.
@@ -58,9 +62,9 @@ class Scenario:
     robot_xy: FloatArray
     capacity: FloatArray
     speed: FloatArray = field(default_factory=lambda: np.empty(0))
-    map_size: tuple[float, float] = (100.0, 100.0)
+    map_size: tuple[float, float] = UNSAID
     name: str = "scenario"
-    map_origin: tuple[float, float] = (math.nan, math.nan)
+    map_origin: tuple[float, float] = UNSAID
     task_names: tuple[str, ...] = ()
     robot_names: tuple[str, ...] = ()
 
@@ -87,11 +91,9 @@ class Scenario:
                     f"{attribute} has shape {getattr(self, attribute).shape}; with {counted(n, 'deadline')} and "
                     f"{counted(m, 'capacity', 'capacities')} it must be {shape}"
                 )
-        object.__setattr__(
-            self, "map_size", _pair(self.map_size, "map_size", SMALLEST, f"two finite numbers > 0{BOUNDS}")
-        )
-        origin = self.map_origin
-        if all(isinstance(each, float) and math.isnan(each) for each in origin):
+        size, origin = _map_of(np.concatenate((self.task_xy, self.robot_xy)), self.map_size, self.map_origin)
+        object.__setattr__(self, "map_size", _pair(size, "map_size", SMALLEST, f"two finite numbers > 0{BOUNDS}"))
+        if _is_unsaid(origin):
             origin = map_origin_for(np.concatenate((self.task_xy, self.robot_xy)), self.map_size)
         within = f"two numbers from {-LARGEST:g} to {LARGEST:g}"
         object.__setattr__(self, "map_origin", _pair(origin, "map_origin", -LARGEST, within))
@@ -205,6 +207,41 @@ def map_origin_for(places: FloatArray, map_size: tuple[float, float]) -> tuple[f
         if (places <= corner + map_size).all():
             return float(corner[0]), float(corner[1])
     return 0.0, 0.0
+
+
+def square_around(places: FloatArray) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Size and origin of the map of a mission that names none.
+
+    The smallest square with a whole side >= 1 that holds every place from 0 and 0 on; or from their least whole x and y
+    on, if one is negative, or that square would be more than twice as large.
+
+    Args:
+        places: (P, 2) at least one place.
+    """
+
+    def side(origin: FloatArray) -> float:
+        return max(1.0, float(np.ceil((places - origin).max())))  # which stays a float, however large
+
+    origin = np.zeros(2)
+    corner = np.floor(places.min(axis=0))
+    if corner.min() < 0 or side(origin) > 2 * side(corner):
+        origin = corner
+    return (side(origin),) * 2, (float(origin[0]), float(origin[1]))
+
+
+def _map_of(places: FloatArray, size: Any, origin: Any) -> tuple[Any, Any]:
+    """Size and origin of the map as far as they are said or, where the default map does not hold all, follow."""
+    if not _is_unsaid(size):
+        return size, origin
+    if _is_unsaid(origin) and np.isfinite(places).all():
+        least = np.array(map_origin_for(places, DEFAULT_SIZE))
+        if not ((places >= least) & (places <= least + DEFAULT_SIZE)).all():
+            return square_around(places)
+    return DEFAULT_SIZE, origin
+
+
+def _is_unsaid(pair: Any) -> bool:
+    return isinstance(pair, tuple) and len(pair) == 2 and all(isinstance(each, float) and each != each for each in pair)
 
 
 def usable_name(name: object) -> str:

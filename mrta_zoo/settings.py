@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import inspect
 import operator
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypedDict, TypeVar, get_args, get_type_hints
+from typing import Any, Literal, TypedDict, TypeVar, cast, get_args, get_type_hints
 
 import numpy as np
 
@@ -109,10 +110,7 @@ class Settings:
     @classmethod
     def of(cls, options: Mapping[str, Any]) -> Settings:
         """Settings from keyword arguments, with a sentence about a misspelt one."""
-        names = [field.name for field in dataclasses.fields(cls)]
-        for option in options:
-            if option not in names:
-                raise ConfigError(f"there is no option {option!r}; the environment has {', '.join(names)}")
+        check_options(options, [field.name for field in dataclasses.fields(cls)])
         return cls(**options)
 
     def draw(self, rng: np.random.Generator) -> Scenario:
@@ -158,7 +156,7 @@ class Settings:
 
 
 def with_options(make: Maker) -> Maker:
-    """Show `help`, notebooks and editors the options that `make` takes as ``**options: Unpack[Options]``.
+    """Show `help`, notebooks and editors what `make` takes as ``**options: Unpack[Options]``, and check the names.
 
     Their names and types are those of `Options` (or `TeamOptions`), their defaults those of `Settings`.
     """
@@ -170,8 +168,26 @@ def with_options(make: Maker) -> Maker:
         for name, kind in get_type_hints(get_args(options.annotation)[0]).items()
     ]
     parameters = sorted(shared + own, key=lambda parameter: parameter.kind)  # `self` first, the form's own last
-    make.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
-    return make
+    names = [parameter.name for parameter in parameters if parameter.kind is inspect.Parameter.KEYWORD_ONLY]
+
+    @functools.wraps(make)
+    def made(*arguments: Any, **options: Any) -> Any:
+        check_options(options.keys() - defaults.keys(), names)  # why it has not all of these, the form says
+        return make(*arguments, **options)
+
+    made.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
+    return cast(Maker, made)
+
+
+def check_options(options: Iterable[str], names: Sequence[str]) -> None:
+    """Check the names of options.
+
+    Raises:
+        ConfigError: if there is none of a name.
+    """
+    for option in options:
+        if option not in names:
+            raise ConfigError(f"there is no option {option!r}; the environment has {', '.join(names)}")
 
 
 def one_of(field: str, value: object, allowed: tuple[str, ...]) -> None:

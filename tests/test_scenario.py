@@ -157,6 +157,24 @@ def test_bad_names_and_maps(changes: dict[str, Any], sentence: str) -> None:
         make(**changes)
 
 
+def test_a_map_that_is_not_named_holds_everything() -> None:
+    def map_of(*places: tuple[float, float], **named: Any) -> tuple[Any, Any]:
+        made = Scenario(places[1:], [9.0] * (len(places) - 1), [1.0] * (len(places) - 1), places[:1], [1.0], **named)  # type: ignore[arg-type]
+        return made.map_size, made.map_origin
+
+    assert map_of((0, 0), (100, 100)) == ((100, 100), (0, 0))
+    assert map_of((-80, 0), (15, 7)) == ((100, 100), (-80, 0))  # on which there is room for 95
+    assert map_of((-80, 0), (80, 0)) == ((160, 160), (-80, 0))
+    assert map_of((0, 0), (150.5, 0)) == ((151, 151), (0, 0))
+    assert map_of((512_000, 5_403_000), (512_300, 5_403_000)) == ((300, 300), (512_000, 5_403_000))
+    with pytest.raises(ScenarioError, match="task 0 has x nan"):
+        map_of((0, 0), (float("nan"), 0))
+    with pytest.raises(ScenarioError, match="map_origin is None; expected two numbers"):
+        map_of((0, 0), (1, 1), map_origin=None)
+    with pytest.raises(ScenarioError, match="map_origin is 5; expected two numbers"):
+        map_of((0, 0), (1, 1), map_origin=5)
+
+
 def test_names_for_people() -> None:
     named = make(task_names=["valve-A", 17, "x" * 99], robot_names=["Ann", "Ben"])
     assert [named.task_name(1), named.robot_name(0)] == ["17", "Ann"]

@@ -14,6 +14,7 @@ from factories import hopeless_scenario, named_scenario
 
 from mrta_zoo import extras
 from mrta_zoo.cli import main
+from mrta_zoo.eval.schedule import decimals
 from mrta_zoo.io import json_format, read_plan, write_plan, write_scenario
 from mrta_zoo.listed import listed
 from mrta_zoo.plan import Plan
@@ -164,3 +165,7 @@ def test_how_learned_methods_plan_is_for_one_of_them(flags: list[str], mission: 
     pytest.importorskip("torch")
     assert main(["solve", str(mission), *flags]) == 0
     assert "planned by capam-plus in " in capsys.readouterr().out
+
+
+def test_small_times_keep_their_digits() -> None:
+    assert [decimals(largest, 2) for largest in (0.0, 1.2e-7, 0.018, 0.5, 3.0, 300.0)] == [2, 9, 4, 3, 2, 2]

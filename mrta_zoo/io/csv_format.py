@@ -143,7 +143,8 @@ def _check_empty(where: str, kind: str, row: dict[str, str]) -> None:
     own = ("kind", "x", "y", *_OF_KIND[kind])
     for column, cell in row.items():
         if cell and column not in own:
-            raise ScenarioError(f"{where}: {column} of a {kind} is {shown(cell)}; expected an empty cell")
+            article = "an" if kind == "origin" else "a"
+            raise ScenarioError(f"{where}: {column} of {article} {kind} is {shown(cell)}; expected an empty cell")
 
 
 def _cell(row: dict[str, str], where: str, what: str, least: float = 0, strict: bool = False) -> float:

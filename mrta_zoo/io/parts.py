@@ -14,7 +14,15 @@ from mrta_zoo.counted import counted
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.source import check_name, shown
 from mrta_zoo.paths import composed
-from mrta_zoo.scenario import BOUNDS, LARGEST, SMALLEST, FloatArray, Scenario, map_origin_for, usable_name
+from mrta_zoo.scenario import (
+    BOUNDS,
+    LARGEST,
+    SMALLEST,
+    Scenario,
+    map_origin_for,
+    square_around,
+    usable_name,
+)
 
 
 class TaskRow(NamedTuple):
@@ -76,8 +84,7 @@ class Part:
 def assemble(main: Part, agents: Part | None) -> Scenario:
     """The scenario of a file that has all, or of a file with tasks and another with the robots.
 
-    Without a map in either file it is the smallest square with a whole side >= 1 that holds every place from 0 and 0
-    on; or from their least whole x and y on, if one is negative, or that square would be more than twice as large.
+    Without a map in either file it is `mrta_zoo.scenario.square_around` all places.
 
     Raises:
         ScenarioError: if something is missing or said twice, a number is too small or large, or a place is outside
@@ -110,7 +117,7 @@ def assemble(main: Part, agents: Part | None) -> Scenario:
     rows: tuple[TaskRow | RobotRow, ...] = (*main.tasks, *agents.robots)
     places = np.array([(row.x, row.y) for row in rows])
     said = _map_of(main, agents)
-    size, origin = (said[1:3], said[3:]) if said else _square_around(places)
+    size, origin = (said[1:3], said[3:]) if said else square_around(places)
     if any(map(math.isnan, origin)):
         origin = map_origin_for(places, size)
     check_inside(rows, size, origin)
@@ -140,19 +147,6 @@ def _map_of(main: Part, agents: Part) -> MapRow | None:
 
 def _map_text(row: MapRow) -> str:
     return f"{row.width:g} x {row.height:g}" + ("" if math.isnan(row.x) else f" from {row.x:g}, {row.y:g}")
-
-
-def _square_around(places: FloatArray) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Size and origin of the map of a file that names none."""
-
-    def side(origin: FloatArray) -> float:
-        return max(1.0, float(np.ceil((places - origin).max())))  # which stays a float, however large
-
-    origin = np.zeros(2)
-    corner = np.floor(places.min(axis=0))
-    if corner.min() < 0 or side(origin) > 2 * side(corner):
-        origin = corner
-    return (side(origin),) * 2, (float(origin[0]), float(origin[1]))
 
 
 def _names(rows: Sequence[TaskRow | RobotRow], who: str) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ import pytest
 from factories import small_scenario
 
 from mrta_zoo import mrta_v0, settings
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.gym_view import ActingRobotEnv
 from mrta_zoo.settings import Options, Settings, TeamOptions
 
@@ -66,3 +67,18 @@ def test_what_type_checkers_read_are_the_settings() -> None:
     assert list(get_type_hints(Options)) == SHARED
     assert all(field.default is not dataclasses.MISSING for field in dataclasses.fields(Settings))
     assert all(f"\n        {name}: " in str(settings.Settings.__doc__) for name in TEAM)
+
+
+@pytest.mark.parametrize(
+    ("make", "named", "unnamed"),
+    [
+        (mrta_v0.env, "illegal_reward", "on_illegal"),
+        (mrta_v0.raw_env, "staggered", "illegal_reward"),
+        (mrta_v0.parallel_env, "on_illegal", "nothing"),
+        (ActingRobotEnv, "on_illegal", "staggered"),
+    ],
+)
+def test_a_misspelt_option_is_answered_by_those_of_this_form(make: Any, named: str, unnamed: str) -> None:
+    with pytest.raises(ConfigError, match=f"there is no option 'rewards'; the environment has .*{named}") as caught:
+        make(rewards="completion")
+    assert unnamed not in str(caught.value)
