@@ -27,7 +27,7 @@ def schedule_table(scenario: Scenario, score: Score) -> Sheet:
         if not visits:
             rows.append((name, "-", "-", "-", "-", "stays where it is"))
         for visit in visits:
-            times = (f"{visit.arrival:.{digits}f}", f"{visit.finish:.{digits}f}", f"{visit.deadline:g}")
+            times = (f"{visit.arrival:.{digits}f}", f"{visit.finish:.{digits}f}", full(visit.deadline))
             rows.append((name, scenario.task_name(visit.task), *times, "" if visit.completed else "late"))
         ends.append(len(rows) - 1)
     left = ("robot", "", *(("task",) if scenario.task_names else ()))
@@ -46,6 +46,11 @@ def proven(score: Score, bound: int | None) -> str:
 def decimals(largest: float, least: int) -> int:
     """Digits after the point that leave the largest of some numbers three digits that count, but `least` of them."""
     return max(least, 2 - math.floor(math.log10(largest))) if largest > 0 else least
+
+
+def full(time: float) -> str:
+    """A time as it was given, of which a large one keeps its last digits."""
+    return f"{time:g}" if time < 1e5 else f"{time:.12g}"
 
 
 def totals(score: Score) -> str:

@@ -12,7 +12,7 @@ from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
-from mrta_zoo.fold import fold
+from mrta_zoo.fold import fold, spelt_out
 
 JOINED = "\N{NO-BREAK SPACE}"
 """Between a heading and what is under it, so that they stay on one line, where there is room."""
@@ -40,7 +40,8 @@ class Sheet:
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         if self.title:
-            yield Text("\n".join(fold(self.title, options.max_width)), style="bold", no_wrap=True, overflow="ignore")
+            title = "\n".join(fold(spelt_out(self.title), options.max_width))
+            yield Text(title, style="bold", no_wrap=True, overflow="ignore")
         if not self.rows:
             return
         for tight in (False, True):
@@ -50,7 +51,7 @@ class Sheet:
                 return
         for number, row in enumerate(self.rows):
             for line in self._sentence(row, options.max_width):
-                yield Text(line, no_wrap=True, overflow="ignore")
+                yield Text(spelt_out(line), no_wrap=True, overflow="ignore")
             if number in self.ends or number == len(self.rows) - 1:
                 yield Text()
 
@@ -62,13 +63,13 @@ class Sheet:
         for heading, *cells in zip(self.headings, *self.rows, strict=True):
             folds = heading == self.prose != ""
             table.add_column(
-                Text(heading),
+                Text(spelt_out(heading)),
                 justify="left" if heading in self.left else "right",
                 no_wrap=not folds,
                 min_width=None if folds else max(map(cell_len, (heading, *cells))),
             )
         for number, row in enumerate(self.rows):
-            table.add_row(*map(Text, row), end_section=number in self.ends)
+            table.add_row(*(Text(spelt_out(cell)) for cell in row), end_section=number in self.ends)
         return table
 
     def _sentence(self, row: Sequence[str], width: int) -> list[str]:

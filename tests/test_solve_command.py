@@ -14,7 +14,7 @@ from factories import hopeless_scenario, named_scenario
 
 from mrta_zoo import extras
 from mrta_zoo.cli import main
-from mrta_zoo.eval.schedule import decimals
+from mrta_zoo.eval.schedule import decimals, full
 from mrta_zoo.io import json_format, read_plan, write_plan, write_scenario
 from mrta_zoo.listed import listed
 from mrta_zoo.plan import Plan
@@ -168,4 +168,7 @@ def test_how_learned_methods_plan_is_for_one_of_them(flags: list[str], mission: 
 
 
 def test_small_times_keep_their_digits() -> None:
+    assert [full(time) for time in (60.0, 33.333333, 999999.75, 123456789.5)] == [
+        "60", "33.3333", "999999.75", "123456789.5"
+    ]  # fmt: skip
     assert [decimals(largest, 2) for largest in (0.0, 1.2e-7, 0.018, 0.5, 3.0, 300.0)] == [2, 9, 4, 3, 2, 2]

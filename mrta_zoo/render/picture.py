@@ -139,7 +139,7 @@ def _draw_tasks(canvas: Canvas, frame: _Frame, mission: Mission, detail: float) 
 def _round_numbers(low: float, size: float, step: float) -> list[float]:
     """The multiples of a step within a range, its ends included."""
     first, last = np.ceil(low / step - 0.01), np.floor((low + size) / step + 0.01)
-    return [step * number for number in np.arange(first, last + 1).tolist()]
+    return [step * number + 0.0 for number in np.arange(first, last + 1).tolist()]  # which is never -0.0
 
 
 def _written(value: float) -> str:

@@ -25,6 +25,8 @@ def compiled(function: Function) -> Function:
     anew; the first is logged as a warning, once, which by default goes to standard error.
     """
     made: Any = njit(nogil=True)(function)
+    if made is function:  # with NUMBA_DISABLE_JIT
+        return function
     try:
         made.enable_caching()
         made._cache = _OptionalCache(made._cache)

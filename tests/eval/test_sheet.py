@@ -14,7 +14,7 @@ from mrta_zoo.cli import main
 from mrta_zoo.debug import Stepper
 from mrta_zoo.debug.screen import screen
 from mrta_zoo.debug.session import Session
-from mrta_zoo.eval.console import fitting, say
+from mrta_zoo.eval.console import LiteralConsole, fitting, say
 from mrta_zoo.eval.sheet import Sheet
 from mrta_zoo.fold import clipped, fold
 from mrta_zoo.generators import TaptcGenerator
@@ -119,3 +119,10 @@ def test_progress(monkeypatch: pytest.MonkeyPatch) -> None:
         output = io.StringIO()
         say(Console(file=output, width=20, force_terminal=terminal, color_system=None), line)
         assert output.getvalue().split("\n")[:-1] == expected
+
+
+def test_nothing_in_a_cell_steers_the_terminal() -> None:
+    printed = io.StringIO()
+    LiteralConsole(file=printed, width=80).print(Sheet("a\x1b[31m", ("b\x1b[31m", "c"), [("\u202e1", "2")]))
+    assert "\x1b" not in printed.getvalue()
+    assert "\u202e" not in printed.getvalue()

@@ -79,3 +79,12 @@ def test_damaged_files_are_replaced(
     assert (damaged(2), mended(2)) == (4, 4)
     assert (hits(damaged), hits(mended)) == (0, 1)
     assert caplog.messages == []
+
+
+def test_with_compiling_switched_off_it_is_the_function_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("numba.core.config.DISABLE_JIT", 1)
+
+    def plain() -> int:
+        return 1
+
+    assert compiled(plain) is plain
