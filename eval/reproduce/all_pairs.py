@@ -60,7 +60,8 @@ def all_pairs_table(study: Study, tasks: int, pairs: Pairs) -> Table:
     ]  # fmt: skip
     return Table(
         name=f"all_pairs_{tasks}",
-        caption=f"Any two methods over all cases with {tasks} tasks: mean of the line’s method minus the column’s, in "
+        caption=f"Any two methods over all cases with {counted(tasks, 'task')}: mean of the line’s method minus "
+        f"the column’s, in "
         f"percentage points. Bold: paired t-test p < {SIGNIFICANT}, Holm-adjusted for all these "
         f"{counted(len(pairs), 'comparison')}. n = {counted(study.cases(study.groups(tasks)[0]), 'pair')}. Intervals "
         "are in the CSV file.",

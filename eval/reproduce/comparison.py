@@ -148,7 +148,8 @@ def _overall_table(study: Study, tasks: int, chosen: list[Comparison]) -> Table:
             }
         )
     caption = (
-        f"{study.against} minus each method over all cases with {tasks} tasks: mean difference in percentage points "
+        f"{study.against} minus each method over all cases with {counted(tasks, 'task')}: mean difference in "
+        f"percentage points "
         f"and d_z, each with its {wording.INTERVAL} in brackets ({wording.BOOTSTRAP}; "
         f"noncentral t); cases in which {study.against} completes more, equally many, fewer tasks; Holm-adjusted "
         "p-values, two-sided. Intervals are for each line alone and not adjusted, so one may leave out 0 where the "
@@ -168,7 +169,8 @@ def _by_robots_table(study: Study, tasks: int, chosen: list[Comparison]) -> Tabl
         if each.significant:
             bold.add((list(cells).index(each.method), list(line).index(each.group.label)))
     caption = (
-        f"{study.against} minus each method by number of robots, {tasks} tasks (as Table III of the paper): mean "
+        f"{study.against} minus each method by number of robots, {counted(tasks, 'task')} (as Table III of the "
+        f"paper): mean "
         "difference in percentage points, and the Holm-adjusted p-value of the paired t-test in parentheses. "
         f"{case_counts(study, tasks)} Bold: p < {SIGNIFICANT}. Intervals, d_z and Wilcoxon tests are in the CSV file."
     )  # fmt: skip
@@ -183,7 +185,7 @@ def _by_robots_table(study: Study, tasks: int, chosen: list[Comparison]) -> Tabl
 
 def _paper_table() -> Table:
     shown = [
-        {"CapAM against": method, **{f"{robots} robots": f"{p:.2g}" for robots, p in values.items()}}
+        {"CapAM against": method, **{counted(robots, "robot"): f"{p:.2g}" for robots, p in values.items()}}
         for method, values in paper.P_VALUES.items()
     ]
     data = [

@@ -22,7 +22,8 @@ def completion_section(study: Study) -> Section:
         pictures.append(
             Picture(
                 name=f"completion_boxes_{tasks}",
-                caption=f"Tasks completed in time, % of the {tasks} tasks of a case, by number of robots (as Fig. 3 of "
+                caption=f"Tasks completed in time, % of the {counted(tasks, 'task')} of a case, by number of "
+                f"robots (as Fig. 3 of "
                 f"the paper). {case_counts(study, tasks)} Dots: single cases; box: middle half of the cases with the "
                 "median; whiskers: furthest case within 1.5 times the length of the box; white diamond: mean.",
                 figure=draw_boxes(study, tasks),
@@ -32,7 +33,8 @@ def completion_section(study: Study) -> Section:
         tables.append(
             estimate_table(
                 study, tasks, "percent", f"completion_{tasks}",
-                f"Tasks completed in time, mean % of the {tasks} tasks of a case, with the {wording.INTERVAL} of the "
+                f"Tasks completed in time, mean % of the {counted(tasks, 'task')} of a case, with the "
+                f"{wording.INTERVAL} of the "
                 f"mean in brackets ({wording.BOOTSTRAP}). "
                 f"{case_counts(study, tasks)} Bold: the highest mean of a column, be the lead significant or not.",
             )

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.figure_style import FAINT, INK, new_figure, plain, style_of
 from mrta_zoo.eval.reproduce import wording
 from mrta_zoo.eval.reproduce.study import Group, Study
@@ -155,7 +156,7 @@ def draw_seconds(study: Study, times: pd.DataFrame) -> Figure:
         axes.set_xscale("log")
         axes.tick_params(which="both", length=0)
         axes.set_xlim(low / 1.6, high * 5)
-        axes.set_title(f"{tasks} tasks", fontsize=10, color=INK, loc="left")
+        axes.set_title(counted(tasks, "task"), fontsize=10, color=INK, loc="left")
         for row, method in enumerate(study.methods):
             (line,) = times[(times["tasks"] == tasks) & (times["method"] == method)].to_dict("records")
             colour, marker = style_of(method, study.methods)

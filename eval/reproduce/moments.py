@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pandas as pd
 
+from mrta_zoo.counted import counted
 from mrta_zoo.eval.reproduce import paper, wording
 from mrta_zoo.eval.reproduce.completion import case_counts
 from mrta_zoo.eval.reproduce.parts import Section, Table
@@ -56,7 +57,7 @@ def moments_section(study: Study) -> Section:
                         }
                     )  # fmt: skip
             shown.append(cells)
-    counts = " ".join(f"{tasks} tasks: {case_counts(study, tasks)}" for tasks in study.sizes)
+    counts = " ".join(f"{counted(tasks, 'task')}: {case_counts(study, tasks)}" for tasks in study.sizes)
     caption = (
         f"Tasks completed in time, mean % with its {wording.INTERVAL} in brackets (BCa bootstrap over cases), of our "
         f"policies; and the paper’s Table IV ({paper.SOURCE}), 24 other cases a line, without intervals. {counts}"

@@ -40,7 +40,8 @@ def share_section(study: Study) -> Section:
     pictures, tables = [], []
     for tasks in shares.sizes:
         caption = (
-            f"Tasks completed, mean % of the tasks of the best known plan, {tasks} tasks, with its {wording.INTERVAL} "
+            f"Tasks completed, mean % of the tasks of the best known plan, {counted(tasks, 'task')}, with its "
+            f"{wording.INTERVAL} "
             f"({wording.BOOTSTRAP}). {case_counts(shares, tasks)}"
         )
         table = estimate_table(

@@ -41,7 +41,7 @@ class Group:
         """What a column or panel is called."""
         if self.robots is not None:
             return counted(self.robots, "robot")
-        return "all cases" if self.tasks is None else f"all with {self.tasks} tasks"
+        return "all cases" if self.tasks is None else f"all with {counted(self.tasks, 'task')}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

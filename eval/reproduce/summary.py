@@ -51,12 +51,13 @@ def summary(
 
 
 def _ranking(study: Study, group: Group) -> str:
+    assert group.tasks is not None
     means = {method: study.select(group, method)["percent"].mean() for method in study.methods}
     order = sorted(means, key=lambda method: -means[method])
     first = (
-        f"{group.tasks} tasks ({counted(study.cases(group), 'case')}): tasks completed in time, mean: "
+        f"{counted(group.tasks, 'task')} ({counted(study.cases(group), 'case')}): tasks completed in time, mean: "
         if len(order) > 1
-        else f"{group.tasks} tasks ({counted(study.cases(group), 'case')}): "
+        else f"{counted(group.tasks, 'task')} ({counted(study.cases(group), 'case')}): "
     )
     return first + ", ".join(f"{method} {wording.number(means[method])} %" for method in order) + "."
 
@@ -86,7 +87,7 @@ def _against(study: Study, tasks: int, chosen: Sequence[Comparison]) -> str:
         parts.append(f"it completes significantly fewer than {wording.listed(worse)}")
     if equal:
         parts.append(f"there is no significant difference from {wording.listed(equal)}")
-    text = f"{study.against} with {tasks} tasks: {'; '.join(parts)}."
+    text = f"{study.against} with {counted(tasks, 'task')}: {'; '.join(parts)}."
     disagree = [
         each.method
         for each in chosen
@@ -114,7 +115,10 @@ def _by_robots(study: Study, tasks: int, chosen: Sequence[Comparison], whole: Se
     if not stories:
         return []
     parts = [f"against {method}, {wording.listed(found)}" for method, found in stories.items()]
-    return [f"{study.against} with {tasks} tasks, where the number of robots changes the picture: {'; '.join(parts)}."]
+    found_so = "; ".join(parts)
+    return [
+        f"{study.against} with {counted(tasks, 'task')}, where the number of robots changes the picture: {found_so}."
+    ]
 
 
 def _not_told_apart(tasks: int, pairs: Pairs) -> list[str]:
@@ -123,14 +127,14 @@ def _not_told_apart(tasks: int, pairs: Pairs) -> list[str]:
         return []
     alike = [f"{first} and {second}" for first, second in not_told_apart(pairs)]
     if not alike:
-        return [f"Any two of the methods differ significantly over the cases with {tasks} tasks."]
+        return [f"Any two of the methods differ significantly over the cases with {counted(tasks, 'task')}."]
     if len(alike) > MOST_NAMED:
         return [
             f"{len(alike)} of {len(pairs)} pairs of methods do not differ significantly over the cases with {tasks} "
             "tasks: see the table of all pairs."
         ]
     return [
-        f"Of any two methods, no significant difference over the cases with {tasks} tasks is between "
+        f"Of any two methods, no significant difference over the cases with {counted(tasks, 'task')} is between "
         f"{wording.listed(alike)}{'; all other differences are significant' if len(alike) < len(pairs) else ''}. "
         "This is adjusted for all pairs, and so a little stricter than the comparison above."
     ]
@@ -147,7 +151,7 @@ def _times(study: Study) -> str:
     means = {method: study.select(Group(size), method)["seconds"].mean() for method in study.methods}
     order = sorted(means, key=lambda method: means[method])
     return (
-        f"Time to plan a mission with {size} tasks, mean: "
+        f"Time to plan a mission with {counted(size, 'task')}, mean: "
         + ", ".join(f"{method} {wording.seconds(means[method])}" for method in order)
         + "."
     )

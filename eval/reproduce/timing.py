@@ -24,15 +24,15 @@ def timing_section(study: Study, sessions: Sequence[Session]) -> Section:
         cells = {"method": method}
         for tasks in sizes:
             (line,) = times[(times["tasks"] == tasks) & (times["method"] == method)].to_dict("records")
-            cells[f"mission, {tasks} tasks"] = wording.seconds(line["mean"])
-            cells[f"decision, {tasks} tasks"] = (
+            cells[f"mission, {counted(tasks, 'task')}"] = wording.seconds(line["mean"])
+            cells[f"decision, {counted(tasks, 'task')}"] = (
                 wording.DASH if pd.isna(line["per_decision"]) else wording.seconds(line["per_decision"])
             )
         if theirs:
             found = paper.SECONDS.get(method)
             cells["paper, 100 tasks"] = wording.DASH if found is None else wording.seconds(found)
         shown.append(cells)
-    counts = wording.listed([f"{study.cases(Group(tasks))} with {tasks} tasks" for tasks in sizes])
+    counts = wording.listed([f"{study.cases(Group(tasks))} with {counted(tasks, 'task')}" for tasks in sizes])
     caption = (
         "Time to plan a whole mission, mean over the cases, and the same time divided by the tasks completed, which is "
         "the time for one decision of methods that decide task by task. Wall clock, one mission at a time, on the "
