@@ -58,7 +58,7 @@ class NearestPolicy:
 class EarliestDeadlinePolicy:
     """The task with the earliest deadline; of equal ones the nearest, then that of the lowest index.
 
-    Deadlines that are too late to bind (`mrta_zoo.scales.slack_time`) look equal in observations, and so count as equal.
+    Deadlines too late to bind (`mrta_zoo.scales.slack_time`) look equal in observations, so they count as equal.
     """
 
     memoryless = True
