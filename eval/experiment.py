@@ -18,17 +18,18 @@ from filelock import FileLock
 
 from mrta_zoo import __version__
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.console import progress_bar
 from mrta_zoo.eval.rows_file import RowsFile, RowType
 from mrta_zoo.eval.runner import Solved, solve_cases
 from mrta_zoo.io import Case
 from mrta_zoo.io.lock import lock_folder
+from mrta_zoo.io.paths import make_folder
 from mrta_zoo.io.source import read_text, write_text
-from mrta_zoo.paths import composed, make_folder
-from mrta_zoo.policies.policy_files import info_file, weights_file
+from mrta_zoo.policies.neural.policy_files import info_file, weights_file
 from mrta_zoo.policies.pretrained import pretrained_names, pretrained_path
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import METHODS, POLISH
+from mrta_zoo.show.terminal.console import progress_bar
+from mrta_zoo.wording import composed
 
 MANIFEST = "manifest.json"
 _LOCKS: list[FileLock] = []  # held until the process ends

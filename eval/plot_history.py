@@ -15,11 +15,11 @@ from typing import Annotated, Any, Literal
 import tyro
 
 from mrta_zoo.errors import ConfigError, MrtaError
-from mrta_zoo.eval.destination import check_destination, check_distinct
-from mrta_zoo.eval.figure import LiteralFigure, check_format, save_picture
+from mrta_zoo.io.destination import check_destination, check_distinct
+from mrta_zoo.io.paths import as_spelt
 from mrta_zoo.io.source import check_name, read_text
-from mrta_zoo.paths import as_spelt
-from mrta_zoo.render.style import plain
+from mrta_zoo.show.axes import plain
+from mrta_zoo.show.figure import LiteralFigure, check_format, save_picture
 
 
 @dataclass(frozen=True, slots=True)

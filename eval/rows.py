@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
-from mrta_zoo.html import table
+from mrta_zoo.show.markup import table
 
 
 @dataclass(frozen=True, slots=True)

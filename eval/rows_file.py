@@ -11,11 +11,10 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import msgspec
 
-from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.source import read_text, write_text
 from mrta_zoo.io.table import columns_in_use
-from mrta_zoo.paths import composed
+from mrta_zoo.wording import composed, counted
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance

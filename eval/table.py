@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from statistics import fmean
 
 from mrta_zoo.eval.rows import Row
-from mrta_zoo.eval.sheet import Sheet
+from mrta_zoo.show.terminal.sheet import Sheet
 
 Cell = Callable[[Sequence[Row]], str]
 

@@ -5,11 +5,13 @@ from pathlib import Path
 from mrta_zoo.plan import Plan
 from mrta_zoo.registration import register
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.show.notebook import attach
 
 __all__ = ["Plan", "Scenario"]
 __version__ = "0.1.0"
 
 register()
+attach()
 
 # In a checkout, from which Python imports when it is started there, policies, train and eval lie beside this folder.
 _checkout = Path(__file__).parent.parent

@@ -13,12 +13,12 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.rules import MaskRule, check_mask_rule, finish_time, may_choose, task_cost, travel_time
 from mrta_zoo.scales import Scales
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.wording import counted
 
 
 @dataclass(frozen=True, slots=True)

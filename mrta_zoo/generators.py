@@ -15,9 +15,9 @@ from typing import Any, Literal, Protocol, get_args
 import numpy as np
 
 from mrta_zoo.bounds import as_count_range, as_range, as_sides, is_number
-from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.scenario import FloatArray, Scenario
+from mrta_zoo.wording import counted
 
 
 class ScenarioGenerator(Protocol):

@@ -55,7 +55,7 @@ reward is `illegal_reward`, the others' is 0. One outside the action space raise
 
 Observations
 ------------
-``{"observation": {"tasks", "robots", "ego", "mission"}, "action_mask"}``; `mrta_zoo.observation` lists the columns.
+``{"observation": {"tasks", "robots", "ego", "mission"}, "action_mask"}``; `mrta_zoo.env.observation` lists the columns.
 With ``observation="masked"`` it is ``{"observation", "action_mask"}`` with one vector, the same tables one after
 another (`observation.split` takes it apart again); with ``observation="flat"`` the vector alone, and the mask is in
 ``infos[agent]["action_mask"]``. `observe` answers for every possible agent at any time; one
@@ -74,7 +74,7 @@ Rewards
 - ``"terminal"`` (default): −cost/N to every agent when the mission ends, with the cost of Eq. 1 of the paper;
 - ``"completion"``: 1/N to every agent as each task is completed; sums up to the completion rate;
 - ``"individual"``: 1/N to the robot that completed the task; sums up, over all agents, to the completion rate;
-- a function ``(mission, finished) -> [a number for each robot]``, see `mrta_zoo.rewards`.
+- a function ``(mission, finished) -> [a number for each robot]``, see `mrta_zoo.env.rewards`.
 
 A task counts when the clock passes its finish, not when it is chosen.
 
@@ -99,7 +99,7 @@ All numeric, the same keys for every agent at reset and after every step:
 
 Arguments
 ---------
-``help(mrta_v0.env)`` lists them, `mrta_zoo.settings.Settings` says what they mean.
+``help(mrta_v0.env)`` lists them, `mrta_zoo.env.settings.Settings` says what they mean.
 
 `reset(seed=…, options={"scenario": scenario})` plays the given scenario; without it the environment's own, or one drawn
 from its generator. The same seed gives the same episode; without a seed the random generator goes on where it was.
@@ -107,14 +107,14 @@ from its generator. The same seed gives the same episode; without a seed the ran
 Parallel form
 -------------
 `parallel_env(…)` takes the same arguments and ``on_illegal="terminate"``, ``"raise"`` or ``"replace"``; see
-`mrta_zoo.parallel`. It is an implementation of its own because PettingZoo's conversion asks for agents that take cyclic
-turns.
+`mrta_zoo.env.parallel`. It is an implementation of its own because PettingZoo's conversion asks for agents that take
+cyclic turns.
 
 Other forms
 -----------
-`mrta_zoo.gym_view.ActingRobotEnv` is a Gymnasium environment, in which one agent acts for each robot in its turn, also
-by ``gymnasium.make("mrta_zoo/mrta-v0")``; `mrta_zoo.dead_steps.SkipDeadSteps` a wrapper that steps for agents that have
-terminated.
+`mrta_zoo.env.gym_view.ActingRobotEnv` is a Gymnasium environment, in which one agent acts for each robot in its turn,
+also by ``gymnasium.make("mrta_zoo/mrta-v0")``; `mrta_zoo.env.dead_steps.SkipDeadSteps` a wrapper that steps for agents
+that have terminated.
 
 Rendering
 ---------
@@ -131,19 +131,15 @@ Version history
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Unpack
+from typing import Any, Unpack
 
-import numpy as np
-import numpy.typing as npt
 from pettingzoo import AECEnv
 
 from mrta_zoo.bounds import as_finite
-from mrta_zoo.env_base import EnvBase
-from mrta_zoo.errors import ActionError
-from mrta_zoo.parallel import ParallelMrtaEnv
-from mrta_zoo.render import RENDER_FPS, RENDER_MODES
-from mrta_zoo.settings import Settings, TeamOptions, with_options
-from mrta_zoo.wrappers import ActionSpaceWrapper, IllegalActionWrapper, OrderWrapper
+from mrta_zoo.env.aec import AecMrtaEnv
+from mrta_zoo.env.parallel import ParallelMrtaEnv
+from mrta_zoo.env.settings import TeamOptions, with_options
+from mrta_zoo.env.wrappers import ActionSpaceWrapper, IllegalActionWrapper, OrderWrapper
 
 __all__ = ["env", "parallel_env", "raw_env"]
 
@@ -154,7 +150,7 @@ def env(*, illegal_reward: float = -1.0, **options: Unpack[TeamOptions]) -> AECE
 
     Args:
         illegal_reward: reward of an agent whose illegal action ends the episode.
-        **options: see `mrta_zoo.settings.Settings`.
+        **options: see `mrta_zoo.env.settings.Settings`.
 
     Raises:
         ConfigError: if an option cannot be used.
@@ -164,110 +160,8 @@ def env(*, illegal_reward: float = -1.0, **options: Unpack[TeamOptions]) -> AECE
     return OrderWrapper(ActionSpaceWrapper(wrapped))
 
 
+raw_env = AecMrtaEnv
+"""The environment without wrappers, see `mrta_zoo.env.aec`."""
+
 parallel_env = ParallelMrtaEnv
-"""The parallel form: all robots that are free act at once, see `mrta_zoo.parallel`."""
-
-
-class raw_env(EnvBase, AECEnv[str, Any, Any]):  # noqa: N801  (PettingZoo's name for it)
-    """The environment without wrappers.
-
-    Can be pickled and deep-copied at any moment; the copy goes on as the original would.
-
-    Args:
-        **options: see `mrta_zoo.settings.Settings`.
-
-    Raises:
-        ConfigError: if an option cannot be used.
-    """
-
-    metadata: ClassVar[dict[str, Any]] = {
-        "name": "mrta_v0",
-        "render_modes": list(RENDER_MODES),
-        "render_fps": RENDER_FPS,
-        "is_parallelizable": False,  # PettingZoo's conversion asks for cyclic turns
-    }
-
-    @with_options
-    def __init__(self, **options: Unpack[TeamOptions]) -> None:
-        settings = Settings.of(options)
-        assert settings.max_tasks is not None
-        super().__init__(settings, num_actions=settings.max_tasks)
-
-    def reset(self, seed: int | None = None, options: dict[str, Any] | None = None) -> None:
-        """Start an episode.
-
-        Args:
-            seed: seeds the random generator, if given.
-            options: ``{"scenario": scenario}`` to play that one.
-
-        Raises:
-            ConfigError: if an option is unknown or the scenario does not fit.
-        """
-        rewards = self._world.reset(seed, options)
-        self.agents = list(self._world.agents)
-        self.terminations = dict.fromkeys(self.agents, False)
-        self.truncations = dict.fromkeys(self.agents, False)
-        self.rewards = dict.fromkeys(self.agents, 0.0)
-        self._cumulative_rewards = dict.fromkeys(self.agents, 0.0)
-        self._skip_agent_selection = None
-        self._settle(rewards)
-        if self.render_mode == "human":
-            self.render()
-
-    def step(self, action: Any) -> None:
-        """Let the selected robot take a task, or None if it has terminated.
-
-        Raises:
-            ActionError: if it may not; nothing is changed then.
-        """
-        if not getattr(self, "agents", None):
-            raise ActionError(f"there is no agent to take action {action!r}; call reset() first")
-        agent = self.agent_selection
-        if self.terminations[agent] or self.truncations[agent]:
-            self._was_dead_step(action)
-            return
-        world = self._world
-        task = world.as_action(agent, action)
-        try:
-            world.take(world.index[agent], task)
-        except ActionError as error:
-            raise ActionError(f"{agent} sent action {task}: {error}") from None
-        self._cumulative_rewards[agent] = 0.0
-        self._settle(world.advance())
-        if self.render_mode == "human":
-            self.render()
-
-    def observe(self, agent: str) -> Any:
-        """What an agent sees now; any possible agent, at any time after the first reset."""
-        return self._world.seen_by(self._world.robot(agent), self.mask(agent))
-
-    def mask(self, agent: str) -> npt.NDArray[np.int8]:
-        """(max_tasks,) int8, 1 where the agent may choose when it is next free; by this its actions are judged."""
-        return self._world.mask(self._world.robot(agent))
-
-    def end_by(self, agent: str, reward: float) -> None:
-        """End the episode for everyone because `agent` did what it may not: it gets `reward`, the others 0."""
-        self.terminations = dict.fromkeys(self.agents, True)
-        self.truncations = dict.fromkeys(self.agents, True)
-        self.rewards = dict.fromkeys(self.agents, 0.0) | {agent: reward}
-        self._cumulative_rewards[agent] = 0.0
-        self._accumulate_rewards()
-        self._deads_step_first()
-
-    def _settle(self, rewards: list[float]) -> None:
-        """Enter the books after the clock has moved: rewards, terminations, infos, who is next."""
-        mission, agents = self._world.mission, self.agents
-        infos, given = self._world.infos(), dict(zip(self._world.agents, rewards, strict=True))
-        gone = len(agents) < len(rewards)  # some are, if staggered
-        self.rewards = {agent: given[agent] for agent in agents} if gone else given
-        self.infos = {agent: infos[agent] for agent in agents} if gone else infos
-        for agent, reward in self.rewards.items():
-            self._cumulative_rewards[agent] += reward
-        if mission.done:
-            self.terminations = dict.fromkeys(agents, True)
-            self.agent_selection = agents[0]
-            return
-        self.agent_selection = self._world.names[mission.actor]
-        if self.settings.staggered and any(mission.retired):
-            self.terminations = {agent: self._world.retired(agent) for agent in agents}
-            self._deads_step_first()
+"""The parallel form: all robots that are free act at once, see `mrta_zoo.env.parallel`."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 NAME = "mrta_zoo/mrta-v0"
 PETTINGZOO = {"aec": "mrta_zoo.mrta_v0:env", "parallel": "mrta_zoo.mrta_v0:parallel_env"}
-GYMNASIUM = "mrta_zoo.gym_view:ActingRobotEnv"
+GYMNASIUM = "mrta_zoo.env.gym_view:ActingRobotEnv"
 
 
 def register() -> None:

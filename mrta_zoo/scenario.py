@@ -11,10 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from mrta_zoo.counted import counted
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.html import map_of, table
-from mrta_zoo.paths import composed
+from mrta_zoo.wording import composed, counted
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -166,29 +164,6 @@ class Scenario:
 
     def __repr__(self) -> str:
         return f"Scenario({self.name!r}, {self.size})"
-
-    def _repr_html_(self) -> str:
-        """What a notebook shows: the ranges of what it holds, and the map."""
-        rows = [
-            (what, f"{values.min():g}", f"{values.mean():.4g}", f"{values.max():g}")
-            for what, values in (
-                ("deadline", self.deadline), ("workload", self.workload),
-                ("capacity", self.capacity), ("speed", self.speed),
-            )
-        ]  # fmt: skip
-        from mrta_zoo.view import shown_box, shown_time  # which look at scenarios
-
-        (x, y), (width, height) = self.map_origin, self.map_size
-        begins = f" from {x:.12g}, {y:.12g}" if x or y else ""
-        title = f"{self.name}: {self.size}, map {width:g} by {height:g}{begins}"
-        tasks = [
-            (f"task {self.task_name(task)}", *place, due)
-            for task, (place, due) in enumerate(zip(self.task_xy.tolist(), self.deadline.tolist(), strict=True))
-        ]
-        robots = [(self.robot_name(robot), *place) for robot, place in enumerate(self.robot_xy.tolist())]
-        low, size = (tuple(each.tolist()) for each in shown_box(self))
-        picture = map_of(low, size, tasks, robots, shown_time(self, 0.0))
-        return table(title, ("", "least", "mean", "most"), rows) + picture
 
 
 def map_origin_for(places: FloatArray, map_size: tuple[float, float]) -> tuple[float, float]:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from mrta_zoo.counted import counted
 from mrta_zoo.errors import ActionError, PlanError
 from mrta_zoo.mission import Mission
 from mrta_zoo.plan import Plan
 from mrta_zoo.rules import MaskRule, check_mask_rule
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
+from mrta_zoo.wording import counted
 
 TOLERANCE = 1e-3
 """By how much probabilities may exceed 1 in sum: they are rounded."""

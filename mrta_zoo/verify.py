@@ -11,11 +11,10 @@ import math
 import operator
 from dataclasses import dataclass
 
-from mrta_zoo.counted import counted
 from mrta_zoo.errors import PlanError
-from mrta_zoo.html import in_order, table
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.wording import counted
 
 COST = "Eq. 1: the sum of finish / deadline over the tasks missed"
 """What the cost is, for where it is shown; `Score` says it in full."""
@@ -67,21 +66,6 @@ class Score:
     schedule: tuple[tuple[Visit, ...], ...]
     task_names: tuple[str, ...] = ()
     robot_names: tuple[str, ...] = ()
-
-    def _repr_html_(self) -> str:
-        """What a notebook shows: the scores, and what each robot did."""
-        title = (
-            f"{self.completed} of {counted(self.tasks, 'task')} completed ({100 * self.completion:.1f} %), "
-            f"cost {self.cost:.3f}, distance {self.distance:.1f}, makespan {self.makespan:.1f} (cost by {COST})"
-        )
-        tasks = self.task_names or range(self.tasks)
-        robots = self.robot_names or range(len(self.schedule))
-        rows = [
-            (robot, f"{sum(visit.completed for visit in visits)} of {len(visits)}",
-             visits[-1].finish if visits else "-", in_order(tasks[visit.task] for visit in visits) or "-")
-            for robot, visits in zip(robots, self.schedule, strict=True)
-        ]  # fmt: skip
-        return table(title, ("robot", "completed", "last finish", "tasks"), rows)
 
 
 def verify(scenario: Scenario, plan: Plan) -> Score:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from mrta_zoo import mrta_v0
+from mrta_zoo.env.settings import ObservationForm
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
-from mrta_zoo.settings import ObservationForm
 
 
 def run_in_environment(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol, runtime_checkable
 
-from mrta_zoo.observation import Observation
+from mrta_zoo.env.observation import Observation
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
 
@@ -14,7 +14,7 @@ class Policy(Protocol):
     """Chooses for one robot at a time, from what that robot sees. Sits in the AEC loop."""
 
     def act(self, observation: Observation, agent: str) -> int:
-        """The task that `agent` takes, given its observation (`mrta_zoo.observation`). Must be legal."""
+        """The task that `agent` takes, given its observation (`mrta_zoo.env.observation`). Must be legal."""
         ...
 
 

@@ -12,22 +12,22 @@ from typing import TYPE_CHECKING
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.extras import require
-from mrta_zoo.paths import check_no_url, suffix_of
+from mrta_zoo.io.paths import check_no_url, suffix_of
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.aec_loop import run_in_environment
-from mrta_zoo.policies.big_mrta import BigMrtaSolver
-from mrta_zoo.policies.heuristics import EarliestDeadlinePolicy, NearestPolicy, RandomPolicy
+from mrta_zoo.policies.classical.big_mrta import BigMrtaSolver
+from mrta_zoo.policies.classical.heuristics import EarliestDeadlinePolicy, NearestPolicy, RandomPolicy
+from mrta_zoo.policies.classical.pyvrp_solver import BUDGET as PYVRP_BUDGET
+from mrta_zoo.policies.classical.pyvrp_solver import PyVrpSolver
+from mrta_zoo.policies.neural.policy_files import SUFFIX
 from mrta_zoo.policies.options import Decode, SolverOptions
-from mrta_zoo.policies.policy_files import SUFFIX
 from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.protocol import Policy, Solver
-from mrta_zoo.policies.pyvrp_solver import BUDGET as PYVRP_BUDGET
-from mrta_zoo.policies.pyvrp_solver import PyVrpSolver
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
 
 if TYPE_CHECKING:
-    from mrta_zoo.policies.neural import NeuralPolicy
+    from mrta_zoo.policies.neural.policy import NeuralPolicy
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,19 +117,19 @@ class LearnedSolver:
 
 
 def _ils(options: SolverOptions) -> Solver:
-    from mrta_zoo.policies.local_search.ils import IlsSolver
+    from mrta_zoo.policies.classical.local_search.ils import IlsSolver
 
     return IlsSolver(options.budget)
 
 
 def _eils(options: SolverOptions) -> Solver:
-    from mrta_zoo.policies.local_search.eils import EilsSolver
+    from mrta_zoo.policies.classical.local_search.eils import EilsSolver
 
     return EilsSolver(options.seed, options.budget, threads=options.threads)
 
 
 def _exact(options: SolverOptions) -> Solver:
-    from mrta_zoo.policies.exact.solver import BUDGET, ExactSolver
+    from mrta_zoo.policies.classical.exact.solver import BUDGET, ExactSolver
 
     return ExactSolver(budget=options.budget or BUDGET)
 
@@ -221,7 +221,7 @@ def make_solver(
 
 def _polished(name: str, options: SolverOptions) -> Solver:
     require("solvers", f"method {name + POLISH!r}")
-    from mrta_zoo.policies.local_search.polish import METHOD_SHARE, PolishedSolver
+    from mrta_zoo.policies.classical.local_search.polish import METHOD_SHARE, PolishedSolver
 
     share = None if options.budget is None else METHOD_SHARE * options.budget
     return PolishedSolver(_make(name, replace(options, budget=share)), options.seed, options.budget, options.threads)
@@ -251,6 +251,6 @@ def load_learned(name: str) -> NeuralPolicy:
         MissingExtraError: if torch is not installed.
     """
     require("torch", f"method {name!r}")
-    from mrta_zoo.policies.neural import load_policy
+    from mrta_zoo.policies.neural.policy import load_policy
 
     return load_policy(name)

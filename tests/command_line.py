@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from mrta_zoo.cli import main
+from mrta_zoo.cli.main import main
 
 Captured = pytest.CaptureFixture[str]
 

@@ -15,7 +15,7 @@ os.environ.setdefault("SDL_VIDEODRIVER", "dummy")  # windows that need no displa
 torch.set_num_threads(1)  # at the tests' sizes more threads only get in each other's way
 
 # Numba's cache does not see that a function called from another file has changed.
-_SOURCES = sorted((Path(__file__).parent.parent / "policies" / "local_search").glob("*.py"))
+_SOURCES = sorted((Path(__file__).parent.parent / "policies" / "classical" / "local_search").glob("*.py"))
 _DIGEST = hashlib.sha256(b"".join(path.read_bytes() for path in _SOURCES)).hexdigest()[:16]
 os.environ["NUMBA_CACHE_DIR"] = str(Path(tempfile.gettempdir()) / f"mrta_zoo_numba_{_DIGEST}")
 

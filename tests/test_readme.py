@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 
 from mrta_zoo.io import read_scenario
-from mrta_zoo.policies.capam.context import CONTEXT_FEATURES
-from mrta_zoo.policies.capam.encoders import ENCODERS
-from mrta_zoo.policies.capam.node_features import NODE_FEATURES
+from mrta_zoo.policies.neural.capam.context import CONTEXT_FEATURES
+from mrta_zoo.policies.neural.capam.encoders import ENCODERS
+from mrta_zoo.policies.neural.capam.node_features import NODE_FEATURES
 from mrta_zoo.policies.registry import METHODS
 
 ROOT = Path(__file__).parents[1]

@@ -17,10 +17,10 @@ from torch import Tensor
 
 from mrta_zoo import mrta_v0
 from mrta_zoo.generators import UniformGenerator
-from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.policies.capam.inputs import Moments, Tasks
 from mrta_zoo.policies.cpu_threads import few_threads
-from mrta_zoo.policies.sharing import build_network
+from mrta_zoo.policies.neural.capam.config import NetworkConfig
+from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.sharing import build_network
 
 
 def play(env: Any, network: Any, seed: int, sampler: torch.Generator | None) -> tuple[float, Tensor]:

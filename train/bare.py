@@ -26,14 +26,14 @@ from typing import Any
 import numpy as np
 import torch
 
-from mrta_zoo.atomic import replacing
-from mrta_zoo.counted import counted
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.stand_ins import why_unreadable
+from mrta_zoo.io.atomic import replacing
+from mrta_zoo.io.stand_ins import why_unreadable
+from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.train.config import TrainConfig
-from mrta_zoo.train.experts import read_plans
+from mrta_zoo.train.imitation.experts import read_plans
 from mrta_zoo.train.reinforce import Reinforce, RunOptions, Update, Validation
+from mrta_zoo.wording import counted
 
 KINDS = {int: "a whole number", float: "a number", bool: "true or false", str: "a text", tuple: "a list"}
 """How JSON's kinds of values are called."""

@@ -11,8 +11,8 @@ from torch import Tensor
 
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.policies.rollout import roll_out
-from mrta_zoo.policies.sharing import Network
+from mrta_zoo.policies.neural.rollout import roll_out
+from mrta_zoo.policies.neural.sharing import Network
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.objective import Objective
@@ -139,7 +139,7 @@ class RolloutBaseline:
         return dict(self.network.state_dict())
 
     def restore(self, state: dict[str, Tensor], path: Path) -> None:
-        from mrta_zoo.policies.weights import load_state  # needs more than torch and NumPy
+        from mrta_zoo.policies.neural.weights import load_state  # needs more than torch and NumPy
 
         load_state(self.network, state, path)
 

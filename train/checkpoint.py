@@ -25,10 +25,10 @@ import torch
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.lock import lock_folder
+from mrta_zoo.io.paths import check_no_url, make_folder
 from mrta_zoo.io.records import write_records
 from mrta_zoo.io.source import check_name
-from mrta_zoo.paths import check_no_url, make_folder
-from mrta_zoo.policies.weights import (
+from mrta_zoo.policies.neural.weights import (
     PolicyInfo,
     load_state,
     read_json,

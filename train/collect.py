@@ -14,11 +14,11 @@ import torch
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.records import write_records
-from mrta_zoo.policies.weights import build_with, read_json, save_policy
-from mrta_zoo.stand_ins import why_unreadable
+from mrta_zoo.io.stand_ins import why_unreadable
+from mrta_zoo.policies.neural.weights import build_with, read_json, save_policy
 from mrta_zoo.train.checkpoint import info_of
 from mrta_zoo.train.config import TrainConfig
-from mrta_zoo.train.experts import UNREADABLE
+from mrta_zoo.train.imitation.experts import UNREADABLE
 from mrta_zoo.train.reinforce import Validation
 
 BARE = "bare"

@@ -8,8 +8,8 @@ from typing import Literal, get_args
 
 from mrta_zoo.bounds import check_seed
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.policies.sharing import USUAL_KINDS, Sharing, check_kinds
+from mrta_zoo.policies.neural.capam.config import NetworkConfig
+from mrta_zoo.policies.neural.sharing import USUAL_KINDS, Sharing, check_kinds
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.train.precision import Precision
 
@@ -39,12 +39,13 @@ class TrainConfig:
         min_robots: fewest robots of a scenario.
         max_robots: most robots of a scenario.
         mask_rule: what a robot may choose.
-        imitation_updates: gradient steps that imitate plans of a strong search (`mrta_zoo.train.experts`) before
-            REINFORCE takes over; 0 for none.
+        imitation_updates: gradient steps that imitate plans of a strong search (`mrta_zoo.train.imitation.experts`)
+            before REINFORCE takes over; 0 for none.
         imitation_plans: number of plans to imitate; they are made and kept in files of 500.
         imitation_batch: plans a step.
         imitation_decisions: decisions of each of them, at most 10,000, drawn at random from a pool of up to 8,192 plans
-            that is made anew now and then (`mrta_zoo.train.imitator`), quicker on a GPU; 0 for all, and no pool.
+            that is made anew now and then (`mrta_zoo.train.imitation.imitator`), quicker on a GPU; 0 for all, and
+            no pool.
         imitation_learning_rate: Adam's step size at the start of the imitation; falls to a tenth along a cosine.
         objective: what to minimise: "cost" (Eq. 1 of the paper, divided by the number of tasks), one minus the
             completion rate ("completion"), or −ln(1 + number of completed tasks) ("relative"), for which missions

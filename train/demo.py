@@ -7,8 +7,8 @@ from pathlib import Path
 from rich.console import Console
 
 from mrta_zoo.train import checkpoint
-from mrta_zoo.train.cli import train
 from mrta_zoo.train.presets import PRESETS
+from mrta_zoo.train.progress import train
 from mrta_zoo.train.reinforce import Validation
 
 

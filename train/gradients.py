@@ -10,8 +10,8 @@ import torch
 from torch import Tensor
 
 from mrta_zoo.batch import ScenarioBatch
-from mrta_zoo.policies.capam.inputs import Tasks
-from mrta_zoo.policies.rollout import Scorer, Segment
+from mrta_zoo.policies.neural.capam.inputs import Tasks
+from mrta_zoo.policies.neural.rollout import Scorer, Segment
 from mrta_zoo.train.precision import Precision, autocast
 
 

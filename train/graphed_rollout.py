@@ -12,13 +12,13 @@ from torch.nn.attention import SDPBackend, sdpa_kernel
 
 from mrta_zoo.batch import BatchMission, ScenarioBatch
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.policies.capam.inputs import Tasks
-from mrta_zoo.policies.rollout import NOT_FINITE, Rollout, Segment, run_segment
-from mrta_zoo.policies.sharing import Network
-from mrta_zoo.policies.temperature import tempered
+from mrta_zoo.policies.neural.capam.inputs import Tasks
+from mrta_zoo.policies.neural.rollout import NOT_FINITE, Rollout, Segment, run_segment
+from mrta_zoo.policies.neural.sharing import Network
+from mrta_zoo.policies.neural.temperature import tempered
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.train.cuda_graph import Graph
-from mrta_zoo.train.imitation import follow_segment
+from mrta_zoo.train.imitation.decisions import follow_segment
 from mrta_zoo.train.precision import Precision, autocast
 
 ATTENTION = [SDPBackend.EFFICIENT_ATTENTION, SDPBackend.MATH]

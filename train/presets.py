@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mrta_zoo.policies.capam.config import NetworkConfig
+from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.train.config import TrainConfig
 
 # The paper's architecture, from nothing: 33 minutes on one thread of a busy machine.

@@ -18,19 +18,19 @@ import torch
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import ScenarioGenerator, draw_scenario
-from mrta_zoo.policies.capam.candidate_decoder import CandidateDecoder
 from mrta_zoo.policies.cpu_threads import few_threads
-from mrta_zoo.policies.rollout import roll_out
-from mrta_zoo.policies.sharing import Network, build_network
-from mrta_zoo.policies.temperature import tempered
+from mrta_zoo.policies.neural.capam.candidate_decoder import CandidateDecoder
+from mrta_zoo.policies.neural.rollout import roll_out
+from mrta_zoo.policies.neural.sharing import Network, build_network
+from mrta_zoo.policies.neural.temperature import tempered
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.train.baselines import Baseline, build_baseline
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, most_robots, training_generator
-from mrta_zoo.train.experts import ExpertPlan
 from mrta_zoo.train.gradients import accumulate_gradients
 from mrta_zoo.train.graphed_rollout import GraphedRollout
-from mrta_zoo.train.imitator import Imitator
+from mrta_zoo.train.imitation.experts import ExpertPlan
+from mrta_zoo.train.imitation.imitator import Imitator
 from mrta_zoo.train.objective import OBJECTIVES, Objective, checked
 from mrta_zoo.train.precision import autocast
 from mrta_zoo.train.scenarios import Feed
@@ -248,8 +248,8 @@ class Reinforce:
                 yield self.validate()
 
     def _start_from(self, initial: str) -> None:
-        from mrta_zoo.policies.neural import load_policy
-        from mrta_zoo.policies.weights import load_state
+        from mrta_zoo.policies.neural.policy import load_policy
+        from mrta_zoo.policies.neural.weights import load_state
 
         policy, config = load_policy(initial), self.config
         info = policy.info

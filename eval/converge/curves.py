@@ -10,10 +10,10 @@ import pandas as pd
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
-from mrta_zoo.counted import counted
-from mrta_zoo.eval.figure_style import FAINT, INK, new_figure, plain, style_of
+from mrta_zoo.eval.report.figure_style import FAINT, INK, new_figure, plain, style_of
 from mrta_zoo.eval.rows import Row
-from mrta_zoo.eval.statistics import estimate_mean
+from mrta_zoo.eval.significance import estimate_mean
+from mrta_zoo.wording import counted
 
 NEAR = 2.0
 """Lines that end within this factor of each other have their names in one column."""

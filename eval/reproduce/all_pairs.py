@@ -7,11 +7,11 @@ from itertools import combinations
 
 import pandas as pd
 
-from mrta_zoo.counted import counted
-from mrta_zoo.eval.reproduce import wording
-from mrta_zoo.eval.reproduce.parts import Table
+from mrta_zoo.eval.report import wording
+from mrta_zoo.eval.report.parts import Table
 from mrta_zoo.eval.reproduce.study import Study
-from mrta_zoo.eval.statistics import SIGNIFICANT, PairedTest, holm, paired_test
+from mrta_zoo.eval.significance import SIGNIFICANT, PairedTest, holm, paired_test
+from mrta_zoo.wording import counted
 
 Pairs = Mapping[tuple[str, str], tuple[PairedTest, float | None]]
 """For each two methods, in the order of the study, the test of first minus second and its adjusted p-value."""

@@ -7,14 +7,15 @@ from dataclasses import dataclass
 
 import pandas as pd
 
-from mrta_zoo.counted import counted
-from mrta_zoo.eval.reproduce import paper, wording
+from mrta_zoo.eval.report import wording
+from mrta_zoo.eval.report.parts import Picture, Section, Table
+from mrta_zoo.eval.reproduce import paper
 from mrta_zoo.eval.reproduce.all_pairs import Pairs, all_pairs_table
 from mrta_zoo.eval.reproduce.completion import case_counts
 from mrta_zoo.eval.reproduce.figures import draw_differences
-from mrta_zoo.eval.reproduce.parts import Picture, Section, Table
 from mrta_zoo.eval.reproduce.study import Group, Study
-from mrta_zoo.eval.statistics import SIGNIFICANT, PairedTest, holm, paired_test
+from mrta_zoo.eval.significance import SIGNIFICANT, PairedTest, holm, paired_test
+from mrta_zoo.wording import counted
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import pandas as pd
 
-from mrta_zoo.counted import counted
-from mrta_zoo.eval.reproduce import wording
+from mrta_zoo.eval.report import wording
+from mrta_zoo.eval.report.parts import Picture, Section, Table
 from mrta_zoo.eval.reproduce.figures import draw_boxes
-from mrta_zoo.eval.reproduce.parts import Picture, Section, Table
 from mrta_zoo.eval.reproduce.study import Study, tidy
-from mrta_zoo.eval.statistics import Estimate
+from mrta_zoo.eval.significance import Estimate
+from mrta_zoo.wording import counted
 
 
 def completion_section(study: Study) -> Section:

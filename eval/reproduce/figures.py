@@ -10,11 +10,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from mrta_zoo.counted import counted
-from mrta_zoo.eval.figure_style import FAINT, INK, new_figure, plain, style_of
-from mrta_zoo.eval.reproduce import wording
+from mrta_zoo.eval.report import wording
+from mrta_zoo.eval.report.figure_style import FAINT, INK, new_figure, plain, style_of
 from mrta_zoo.eval.reproduce.study import Group, Study
-from mrta_zoo.eval.statistics import LEAST, Estimate
+from mrta_zoo.eval.significance import LEAST, Estimate
+from mrta_zoo.wording import counted
 
 PANELS_A_LINE = 4
 ROW = 0.34

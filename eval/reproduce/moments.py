@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import pandas as pd
 
-from mrta_zoo.counted import counted
-from mrta_zoo.eval.reproduce import paper, wording
+from mrta_zoo.eval.report import wording
+from mrta_zoo.eval.report.parts import Section, Table
+from mrta_zoo.eval.reproduce import paper
 from mrta_zoo.eval.reproduce.completion import case_counts
-from mrta_zoo.eval.reproduce.parts import Section, Table
 from mrta_zoo.eval.reproduce.study import Study
+from mrta_zoo.wording import counted
 
 
 def moments_section(study: Study) -> Section:

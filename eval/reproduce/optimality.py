@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pandas as pd
 
-from mrta_zoo.counted import counted
-from mrta_zoo.eval.reproduce import wording
+from mrta_zoo.eval.report import wording
+from mrta_zoo.eval.report.parts import Picture, Section, Table
 from mrta_zoo.eval.reproduce.figures import draw_gaps
-from mrta_zoo.eval.reproduce.parts import Picture, Section, Table
 from mrta_zoo.eval.reproduce.study import Study
-from mrta_zoo.eval.statistics import estimate_mean
+from mrta_zoo.eval.significance import estimate_mean
+from mrta_zoo.wording import counted
 
 EXACT = "exact"
 TITLE = "Optimality gap on small scenarios"

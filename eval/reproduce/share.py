@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mrta_zoo.counted import counted
-from mrta_zoo.eval.reproduce import wording
+from mrta_zoo.eval.report import wording
+from mrta_zoo.eval.report.parts import Picture, Section
 from mrta_zoo.eval.reproduce.completion import case_counts, estimate_table
 from mrta_zoo.eval.reproduce.figures import draw_intervals
-from mrta_zoo.eval.reproduce.parts import Picture, Section
 from mrta_zoo.eval.reproduce.study import Study
+from mrta_zoo.wording import counted
 
 
 def share_section(study: Study) -> Section:

@@ -8,9 +8,9 @@ from dataclasses import asdict, dataclass, field, fields
 import numpy as np
 import pandas as pd
 
-from mrta_zoo.counted import counted
 from mrta_zoo.eval.rows import Row
-from mrta_zoo.eval.statistics import Estimate, estimate_mean
+from mrta_zoo.eval.significance import Estimate, estimate_mean
+from mrta_zoo.wording import counted
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from mrta_zoo.counted import counted
 from mrta_zoo.eval.machine import Session
-from mrta_zoo.eval.reproduce import wording
+from mrta_zoo.eval.report import wording
 from mrta_zoo.eval.reproduce.all_pairs import Pairs, not_told_apart
 from mrta_zoo.eval.reproduce.comparison import Comparison
 from mrta_zoo.eval.reproduce.optimality import EXACT
 from mrta_zoo.eval.reproduce.study import Group, Study
 from mrta_zoo.eval.reproduce.timing import busy_note
-from mrta_zoo.eval.statistics import SIGNIFICANT
+from mrta_zoo.eval.significance import SIGNIFICANT
+from mrta_zoo.wording import counted
 
 MOST_NAMED = 6
 """Pairs of methods that one sentence can name."""

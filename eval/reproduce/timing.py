@@ -6,12 +6,13 @@ from collections.abc import Sequence
 
 import pandas as pd
 
-from mrta_zoo.counted import counted
 from mrta_zoo.eval.machine import Session
-from mrta_zoo.eval.reproduce import paper, wording
+from mrta_zoo.eval.report import wording
+from mrta_zoo.eval.report.parts import Picture, Section, Table
+from mrta_zoo.eval.reproduce import paper
 from mrta_zoo.eval.reproduce.figures import draw_seconds
-from mrta_zoo.eval.reproduce.parts import Picture, Section, Table
 from mrta_zoo.eval.reproduce.study import Group, Study
+from mrta_zoo.wording import counted
 
 
 def timing_section(study: Study, sessions: Sequence[Session]) -> Section:

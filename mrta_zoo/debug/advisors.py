@@ -14,15 +14,15 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 import numpy.typing as npt
 
+from mrta_zoo.env.observation import Observation, Observer
+from mrta_zoo.env.world import as_action
 from mrta_zoo.mission import Mission
-from mrta_zoo.observation import Observation, Observer
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.protocol import Policy, Solver
 from mrta_zoo.policies.registry import LearnedSolver, PolicySolver, make_solver
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import TOLERANCE, Choice, tightest_rule
-from mrta_zoo.world import as_action
 
 LEAST, FEW = 1e-4, 10
 """Probabilities below are left out of a choice, unless they are among the few that are greatest."""

@@ -12,8 +12,7 @@ from collections.abc import Sequence
 from rich.cells import cell_len, set_cell_size
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.listed import listed
-from mrta_zoo.paths import composed
+from mrta_zoo.wording import composed, listed
 
 LISTED = 8
 """Names that a message lists at most."""

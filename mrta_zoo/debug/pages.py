@@ -8,13 +8,13 @@ from typing import Literal
 
 from rich.cells import cell_len
 
-from mrta_zoo.counted import counted
 from mrta_zoo.debug.called import called, cells, headings, shortened
 from mrta_zoo.debug.outlook import SortKey
 from mrta_zoo.debug.percent import percent
 from mrta_zoo.debug.stepper import Stepper
-from mrta_zoo.render.whereabouts import whereabouts
 from mrta_zoo.rules import MaskReason
+from mrta_zoo.show.render.whereabouts import whereabouts
+from mrta_zoo.wording import counted
 
 Subject = Literal["tasks", "robots", "log", "help"]
 

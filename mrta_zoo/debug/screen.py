@@ -12,9 +12,9 @@ from rich.text import Text
 from mrta_zoo.debug.called import shortened
 from mrta_zoo.debug.pages import Listing
 from mrta_zoo.debug.session import Session
-from mrta_zoo.fold import clipped
 from mrta_zoo.rules import Status
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.show.terminal.fold import clipped
 
 AROUND = 11
 """Lines of a screen besides the rows of the table: the header, the table's title, head and foot, message and prompt."""

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn, get_args
 
-from mrta_zoo.counted import counted
 from mrta_zoo.debug.advisors import Advisor, PolicyAdvisor
 from mrta_zoo.debug.called import find, found, numbers_count
 from mrta_zoo.debug.outlook import SortKey
@@ -17,6 +16,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.io import read_trace
 from mrta_zoo.io.json_format import json_kind
 from mrta_zoo.trace import Choice
+from mrta_zoo.wording import counted
 
 
 class Session:

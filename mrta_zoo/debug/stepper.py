@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from mrta_zoo.counted import counted
 from mrta_zoo.debug.advisors import Advisor, make_advisor
 from mrta_zoo.debug.outlook import Prospect, SortKey, outlook, ranked
 from mrta_zoo.debug.recorder import overrule
@@ -17,6 +16,7 @@ from mrta_zoo.policies.protocol import Policy, Solver
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import Choice, Trace, after, make
+from mrta_zoo.wording import counted
 
 
 class Stepper:

@@ -14,10 +14,11 @@ from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.csv_format import is_other_csv
 from mrta_zoo.io.files import read_scenario
 from mrta_zoo.io.json_format import is_other_json
+from mrta_zoo.io.paths import check_no_url, suffix_of
 from mrta_zoo.io.source import StrPath, check_name, count, shown
 from mrta_zoo.io.table import read_table
-from mrta_zoo.paths import check_no_url, composed, suffix_of
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.wording import composed
 
 REFERENCE_FILE = "reference.csv"
 ALIKE = 0.8

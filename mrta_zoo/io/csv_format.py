@@ -16,9 +16,9 @@ from pathlib import Path
 
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, in_id_order, place_in_file
+from mrta_zoo.io.paths import suffix_of
 from mrta_zoo.io.source import StrPath, number, shown, write_text
 from mrta_zoo.io.table import read_table
-from mrta_zoo.paths import suffix_of
 from mrta_zoo.scenario import Scenario
 
 COLUMNS = ("kind", "x", "y", "deadline", "workload", "capacity", "speed")

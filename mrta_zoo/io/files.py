@@ -8,9 +8,9 @@ from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.csv_format import read_csv_part, write_csv
 from mrta_zoo.io.json_format import read_json_part, write_json
 from mrta_zoo.io.parts import Part, assemble
+from mrta_zoo.io.paths import check_no_url, suffix_of
 from mrta_zoo.io.source import StrPath, shown
 from mrta_zoo.io.taptc import find_agent_file, read_agent_part, read_task_part, write_taptc
-from mrta_zoo.paths import check_no_url, suffix_of
 from mrta_zoo.scenario import Scenario
 
 

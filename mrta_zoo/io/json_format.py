@@ -13,12 +13,13 @@ from msgspec import Meta
 
 from mrta_zoo.errors import PlanError, ScenarioError
 from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, in_id_order
+from mrta_zoo.io.paths import suffix_of
 from mrta_zoo.io.source import StrPath, read_text
 from mrta_zoo.io.strict_json import read_document, write_document
 from mrta_zoo.left_out import Reason
-from mrta_zoo.paths import composed, suffix_of
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.wording import composed
 
 Positive = Annotated[float, Meta(gt=0)]
 NonNegative = Annotated[float, Meta(ge=0)]

@@ -10,10 +10,8 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from mrta_zoo.counted import counted
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.source import check_name, shown
-from mrta_zoo.paths import composed
 from mrta_zoo.scenario import (
     BOUNDS,
     LARGEST,
@@ -23,6 +21,7 @@ from mrta_zoo.scenario import (
     square_around,
     usable_name,
 )
+from mrta_zoo.wording import composed, counted
 
 
 class TaskRow(NamedTuple):

@@ -6,10 +6,11 @@ import math
 import os
 import re
 
-from mrta_zoo.atomic import replacing
 from mrta_zoo.errors import MrtaError
-from mrta_zoo.paths import check_no_url, is_utf8
-from mrta_zoo.stand_ins import stand_in
+from mrta_zoo.io.atomic import replacing
+from mrta_zoo.io.paths import check_no_url
+from mrta_zoo.io.stand_ins import stand_in
+from mrta_zoo.wording import is_utf8
 
 StrPath = str | os.PathLike[str]
 

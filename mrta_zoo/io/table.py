@@ -6,9 +6,9 @@ import csv
 import io
 from collections.abc import Sequence
 
-from mrta_zoo.counted import counted
 from mrta_zoo.errors import MrtaError
 from mrta_zoo.io.source import StrPath, read_text, shown
+from mrta_zoo.wording import counted
 
 
 def read_table(path: StrPath, error: type[MrtaError]) -> list[tuple[str, list[str]]]:

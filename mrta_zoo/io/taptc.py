@@ -15,12 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
-from mrta_zoo.counted import counted
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, assemble, in_id_order
+from mrta_zoo.io.paths import as_spelt
 from mrta_zoo.io.source import StrPath, count, number, read_text, shown, write_text
-from mrta_zoo.paths import as_spelt
 from mrta_zoo.scenario import Scenario, map_origin_for
+from mrta_zoo.wording import counted
 
 _CASE_NAME = re.compile(r"r[0-9]+(a[0-9]+i[0-9]+)", re.IGNORECASE)
 _TASK_LINE = "id x y workload deadline"

@@ -18,11 +18,11 @@ from mrta_zoo.debug.recorder import record
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.mission import Mission
 from mrta_zoo.policies.registry import make_solver
-from mrta_zoo.render.whereabouts import whereabouts
-from mrta_zoo.replay import write_replay
 from mrta_zoo.rules import Status
+from mrta_zoo.show.render.whereabouts import whereabouts
+from mrta_zoo.show.replay import write_replay
+from mrta_zoo.show.view import shown_time
 from mrta_zoo.trace import Trace
-from mrta_zoo.view import shown_time
 
 pytestmark = pytest.mark.browser
 

@@ -10,9 +10,9 @@ import pytest
 from factories import FORMS, GENERATOR, hopeless_scenario, mask_of, play, random_action, same, small_scenario, started
 
 from mrta_zoo import mrta_v0
+from mrta_zoo.env.gym_view import ActingRobotEnv
 from mrta_zoo.errors import ActionError, ConfigError
-from mrta_zoo.gym_view import ActingRobotEnv
-from mrta_zoo.policies.heuristics import NearestPolicy
+from mrta_zoo.policies.classical.heuristics import NearestPolicy
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")

@@ -20,9 +20,9 @@ from hypothesis import strategies as st
 from strategies import scenarios
 
 from mrta_zoo import Scenario, mrta_v0
+from mrta_zoo.env.observation import Observer, split
 from mrta_zoo.errors import ActionError, ConfigError
 from mrta_zoo.mission import Mission
-from mrta_zoo.observation import Observer, split
 from mrta_zoo.rules import MaskReason, Status
 from mrta_zoo.scales import Scales
 

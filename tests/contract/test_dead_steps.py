@@ -7,7 +7,7 @@ import pytest
 from factories import GENERATOR, hopeless_scenario, mask_of, play, random_action
 
 from mrta_zoo import mrta_v0
-from mrta_zoo.dead_steps import SkipDeadSteps
+from mrta_zoo.env.dead_steps import SkipDeadSteps
 
 
 def played(env: SkipDeadSteps, seed: int) -> tuple[list[tuple[str, int]], dict[str, float]]:

@@ -12,8 +12,8 @@ from factories import FORMS, GENERATOR, hopeless_scenario, random_action, same, 
 from gymnasium.utils.env_checker import check_env
 
 from mrta_zoo import mrta_v0
+from mrta_zoo.env.gym_view import ActingRobotEnv
 from mrta_zoo.errors import ActionError, ConfigError
-from mrta_zoo.gym_view import ActingRobotEnv
 
 
 @pytest.mark.parametrize("form", FORMS)

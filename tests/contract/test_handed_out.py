@@ -12,8 +12,8 @@ import pytest
 from factories import FORMS, mask_of, random_action, same, small_scenario, started
 
 from mrta_zoo import Scenario, mrta_v0
+from mrta_zoo.env.gym_view import ActingRobotEnv
 from mrta_zoo.errors import ActionError
-from mrta_zoo.gym_view import ActingRobotEnv
 
 # Two robots, three tasks; robot_0 may choose all of them at first, robot_1 as well.
 SCENARIO = Scenario(

@@ -12,7 +12,7 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from torch.distributions import Categorical
 
 from mrta_zoo import mrta_v0
-from mrta_zoo.gym_view import ActingRobotEnv
+from mrta_zoo.env.gym_view import ActingRobotEnv
 
 
 @pytest.mark.parametrize("autoreset", [AutoresetMode.NEXT_STEP, AutoresetMode.SAME_STEP])

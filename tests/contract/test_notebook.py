@@ -15,7 +15,7 @@ from IPython.core.formatters import DisplayFormatter
 from mrta_zoo import Plan, Scenario, mrta_v0
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.generators import UniformGenerator
-from mrta_zoo.html import MOST_ROWS, table
+from mrta_zoo.show.markup import MOST_ROWS, table
 from mrta_zoo.verify import verify
 
 SCENARIO = Scenario(
@@ -90,7 +90,7 @@ def test_an_environment_is_a_picture(make):
 
 
 def test_an_environment_without_pygame_is_text(monkeypatch):
-    monkeypatch.setattr("mrta_zoo.env_base.find_spec", lambda name: None)
+    monkeypatch.setattr("mrta_zoo.env.base.find_spec", lambda name: None)
     env = mrta_v0.env(scenario=SCENARIO)
     env.reset()
     assert shown(env).startswith('<pre class="tex2jax_ignore mathjax_ignore">a &lt; b   time 0.0   2 tasks')

@@ -17,10 +17,10 @@ from pettingzoo.utils.wrappers import RecordVideo
 from mrta_zoo import Scenario, mrta_v0
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.mission import Mission
-from mrta_zoo.palette import GROUND, blend, robot_colour
-from mrta_zoo.render.canvas import as_array, fitted, text_width
-from mrta_zoo.render.picture import draw
-from mrta_zoo.render.window import Window
+from mrta_zoo.show.palette import GROUND, blend, robot_colour
+from mrta_zoo.show.render.canvas import as_array, fitted, text_width
+from mrta_zoo.show.render.picture import draw
+from mrta_zoo.show.render.window import Window
 
 SIZE = (720, 1040, 3)
 # A map of 636 x 636 pixels with its lower left corner at (40, 688): 6.36 pixels to the distance unit.

@@ -10,8 +10,8 @@ from factories import named_scenario
 
 from mrta_zoo import Scenario, mrta_v0
 from mrta_zoo.mission import Mission
-from mrta_zoo.render import describe
-from mrta_zoo.render.whereabouts import whereabouts
+from mrta_zoo.show.render import describe
+from mrta_zoo.show.render.whereabouts import whereabouts
 
 # robot_0 needs 10 / 1 + 6 / 2 = 13 for task 0, robot_1 2 / 2 = 1 for task 1 and then nothing is left for it.
 SCENARIO = Scenario(

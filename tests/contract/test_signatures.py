@@ -10,10 +10,11 @@ from typing import Any, Literal, get_type_hints
 import pytest
 from factories import small_scenario
 
-from mrta_zoo import mrta_v0, settings
+from mrta_zoo import mrta_v0
+from mrta_zoo.env import settings
+from mrta_zoo.env.gym_view import ActingRobotEnv
+from mrta_zoo.env.settings import Options, Settings, TeamOptions
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.gym_view import ActingRobotEnv
-from mrta_zoo.settings import Options, Settings, TeamOptions
 
 SHARED = [
     "scenario", "generator", "max_tasks", "max_robots", "mask_rule", "reward", "observation", "render_mode",

@@ -12,15 +12,15 @@ import pytest
 from factories import small_scenario
 from rich.console import Console
 
+from mrta_zoo.cli.compare import report
 from mrta_zoo.debug import Stepper, compare, record
 from mrta_zoo.debug.percent import percent
 from mrta_zoo.debug.screen import screen
 from mrta_zoo.debug.session import Session
-from mrta_zoo.eval.compare import report
+from mrta_zoo.env.observation import Observation
 from mrta_zoo.io import read_trace, write_trace
-from mrta_zoo.observation import Observation
-from mrta_zoo.replay.episode import episode_of
 from mrta_zoo.rules import MaskReason
+from mrta_zoo.show.replay.episode import episode_of
 
 SCENARIO = small_scenario(2, tasks=12, robots=3)
 

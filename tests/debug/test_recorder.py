@@ -10,10 +10,10 @@ from factories import small_scenario
 
 from mrta_zoo.debug.advisors import PlanAdvisor, make_advisor
 from mrta_zoo.debug.recorder import play, record
+from mrta_zoo.env.observation import Observation
 from mrta_zoo.errors import ConfigError, PlanError
-from mrta_zoo.observation import Observation
 from mrta_zoo.plan import Plan
-from mrta_zoo.policies.heuristics import RandomPolicy
+from mrta_zoo.policies.classical.heuristics import RandomPolicy
 from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.registry import make_solver, method_names
 from mrta_zoo.scenario import Scenario
@@ -59,7 +59,7 @@ def test_a_learned_policy_shows_its_probabilities(decode: str) -> None:
 def test_a_policy_that_samples_is_recorded_as_it_acts() -> None:
     pytest.importorskip("torch")
     from mrta_zoo.policies.aec_loop import run_in_environment
-    from mrta_zoo.policies.neural import load_policy
+    from mrta_zoo.policies.neural.policy import load_policy
 
     trace = record(SCENARIO, load_policy("capam", decode="sample", seed=4))
     assert trace == record(SCENARIO, load_policy("capam", decode="sample", seed=4))

@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from strategies import scenarios, seeded_scenarios
 
 from mrta_zoo.debug import Stepper, make_advisor, record
+from mrta_zoo.env.observation import Observation
 from mrta_zoo.errors import ActionError, ConfigError, PlanError
 from mrta_zoo.io import read_trace
 from mrta_zoo.mission import Mission
-from mrta_zoo.observation import Observation
 from mrta_zoo.plan import Plan
 from mrta_zoo.rules import MaskReason
 from mrta_zoo.scenario import Scenario
@@ -92,7 +92,7 @@ def test_following_is_what_the_method_does() -> None:
 
 def test_a_learned_policy_that_samples_gives_the_same_advice_again() -> None:
     pytest.importorskip("torch")
-    from mrta_zoo.policies.neural import load_policy
+    from mrta_zoo.policies.neural.policy import load_policy
 
     stepper = Stepper(SCENARIO, load_policy("capam", decode="sample", seed=1))
     stepper.finish()

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from mrta_zoo.cli import main
+from mrta_zoo.cli.converge import every_of_each_size, seconds_of
+from mrta_zoo.cli.main import main
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.converge.command import every_of_each_size, seconds_of
 from mrta_zoo.eval.converge.curves import BudgetRow, curves_of, draw_curves
 from mrta_zoo.io import Case
 from mrta_zoo.suite import builtin_suite

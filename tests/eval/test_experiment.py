@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mrta_zoo.cli import main
+from mrta_zoo.cli.case_choice import read_all, shown_cases
+from mrta_zoo.cli.main import main
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.case_choice import read_all, shown_cases
 from mrta_zoo.eval.converge.curves import BudgetRow
 from mrta_zoo.eval.experiment import (
     MANIFEST,
@@ -197,9 +197,9 @@ def test_accents_may_be_written_in_two_ways(tmp_path: Path) -> None:
 
 
 def test_a_method_whose_path_has_accents(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from mrta_zoo.policies.capam.config import NetworkConfig
-    from mrta_zoo.policies.sharing import build_network
-    from mrta_zoo.policies.weights import PolicyInfo, save_policy
+    from mrta_zoo.policies.neural.capam.config import NetworkConfig
+    from mrta_zoo.policies.neural.sharing import build_network
+    from mrta_zoo.policies.neural.weights import PolicyInfo, save_policy
 
     monkeypatch.chdir(tmp_path)
     config = NetworkConfig(embedding=32, heads=4)
@@ -268,10 +268,10 @@ def test_a_row_of_another_case_or_method_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("command", "where"),
     [
-        ("reproduce", "mrta_zoo.eval.reproduce.command"),
-        ("converge", "mrta_zoo.eval.converge.command"),
-        ("ablate", "mrta_zoo.eval.ablation.command"),
-        ("sharing", "mrta_zoo.eval.sharing.command"),
+        ("reproduce", "mrta_zoo.cli.reproduce"),
+        ("converge", "mrta_zoo.cli.converge"),
+        ("ablate", "mrta_zoo.cli.ablate"),
+        ("sharing", "mrta_zoo.cli.sharing"),
     ],
 )
 def test_ctrl_c_says_how_to_go_on(

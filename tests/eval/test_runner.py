@@ -11,18 +11,18 @@ import pytest
 from rich.console import Console
 
 from mrta_zoo.errors import ConfigError, PlanError, ScenarioError
-from mrta_zoo.eval.case_folder import write_case_folder
-from mrta_zoo.eval.destination import check_destination
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.runner import evaluate
-from mrta_zoo.eval.schedule import schedule_table, totals
 from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.generators import TaptcGenerator, UniformGenerator
 from mrta_zoo.io import Case, read_cases
+from mrta_zoo.io.case_folder import write_case_folder
+from mrta_zoo.io.destination import check_destination
 from mrta_zoo.io.records import write_records
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.registry import make_solver
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.show.plan.text import schedule_table, totals
 from mrta_zoo.verify import verify
 
 # Robot 0 at (0, 0) does 2 work units a time unit, robot 1 at (100, 0) one.

@@ -18,10 +18,10 @@ from torch.utils.data import default_collate
 
 from mrta_zoo import mrta_v0
 from mrta_zoo.generators import UniformGenerator
-from mrta_zoo.policies.actor_critic import ActorCritic
-from mrta_zoo.policies.heuristics import RandomPolicy
-from mrta_zoo.policies.neural import load_policy
-from mrta_zoo.policies.weights import save_policy
+from mrta_zoo.policies.classical.heuristics import RandomPolicy
+from mrta_zoo.policies.neural.actor_critic import ActorCritic
+from mrta_zoo.policies.neural.policy import load_policy
+from mrta_zoo.policies.neural.weights import save_policy
 from mrta_zoo.train.integrations import rllib_ppo, sb3_ppo, supersuit_ppo, tianshou_ppo, torchrl_ppo
 from mrta_zoo.train.integrations.networks import FORM, Kind, build
 from mrta_zoo.train.integrations.problem import UNSEEN, Planner, completions, in_aec_loop, options

@@ -10,16 +10,17 @@ import torch
 from factories import small_scenario
 
 from mrta_zoo import mrta_v0
+from mrta_zoo.cli.train import train_command
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import UniformGenerator
-from mrta_zoo.policies import decoding, neural
-from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.policies.capam.network import AllocationNetwork
 from mrta_zoo.policies.cpu_threads import VARIABLES, cpu_threads, few_threads
-from mrta_zoo.policies.neural import NeuralPolicy
-from mrta_zoo.policies.weights import PolicyInfo
+from mrta_zoo.policies.neural import decoding
+from mrta_zoo.policies.neural import policy as neural
+from mrta_zoo.policies.neural.capam.config import NetworkConfig
+from mrta_zoo.policies.neural.capam.network import AllocationNetwork
+from mrta_zoo.policies.neural.policy import NeuralPolicy
+from mrta_zoo.policies.neural.weights import PolicyInfo
 from mrta_zoo.train import aec_reinforce, reinforce
-from mrta_zoo.train.cli import train_command
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.reinforce import Reinforce
 
@@ -117,6 +118,6 @@ def test_the_command_train(flags: list[str], expected: int, monkeypatch: pytest.
         with few_threads():
             counts.append(torch.get_num_threads())
 
-    monkeypatch.setattr("mrta_zoo.train.cli._run", run)
+    monkeypatch.setattr("mrta_zoo.cli.train._run", run)
     train_command(["--out", "unused", *flags])
     assert counts == [expected]

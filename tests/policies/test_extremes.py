@@ -14,15 +14,16 @@ from mrta_zoo import Scenario, mrta_v0
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import UniformGenerator
-from mrta_zoo.policies import decoding, neural, rollout
-from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.policies.capam.inputs import Tasks
-from mrta_zoo.policies.capam.neighbourhood import Neighbourhood
-from mrta_zoo.policies.neural import NeuralPolicy, load_policy
+from mrta_zoo.policies.neural import decoding, rollout
+from mrta_zoo.policies.neural import policy as neural
+from mrta_zoo.policies.neural.capam.config import NetworkConfig
+from mrta_zoo.policies.neural.capam.inputs import Tasks
+from mrta_zoo.policies.neural.capam.neighbourhood import Neighbourhood
+from mrta_zoo.policies.neural.policy import NeuralPolicy, load_policy
+from mrta_zoo.policies.neural.rollout import Rollout, roll_out
+from mrta_zoo.policies.neural.sharing import build_network
+from mrta_zoo.policies.neural.weights import PolicyInfo
 from mrta_zoo.policies.pretrained import pretrained_names
-from mrta_zoo.policies.rollout import Rollout, roll_out
-from mrta_zoo.policies.sharing import build_network
-from mrta_zoo.policies.weights import PolicyInfo
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.suite import builtin_suite
 from mrta_zoo.verify import verify

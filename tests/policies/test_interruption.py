@@ -18,8 +18,8 @@ from mrta_zoo.policies.registry import make_solver
 
 pytest.importorskip("numba")
 
-from mrta_zoo.policies.exact import relaxation, set_choice
-from mrta_zoo.policies.local_search import eils, ils
+from mrta_zoo.policies.classical.exact import relaxation, set_choice
+from mrta_zoo.policies.classical.local_search import eils, ils
 
 CASE = TaptcGenerator(tasks=(40, 40), robots=(3, 3))(np.random.default_rng(3))
 BUDGET = 20.0

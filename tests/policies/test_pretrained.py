@@ -7,8 +7,8 @@ import pytest
 
 from mrta_zoo.mission import Mission
 from mrta_zoo.policies.aec_loop import run_in_environment
-from mrta_zoo.policies.heuristics import NearestPolicy
-from mrta_zoo.policies.neural import load_policy
+from mrta_zoo.policies.classical.heuristics import NearestPolicy
+from mrta_zoo.policies.neural.policy import load_policy
 from mrta_zoo.policies.pretrained import pretrained_names, pretrained_path
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.suite import builtin_suite

@@ -8,6 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from installed import skip_unless_installed
 from strategies import seeded_scenarios
 
 from mrta_zoo import extras
@@ -17,11 +18,6 @@ from mrta_zoo.policies.options import SolverOptions
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import METHODS, make_solver, method_names
 from mrta_zoo.verify import verify
-
-
-def skip_unless_installed(name: str) -> None:
-    for module in extras.EXTRAS[METHODS[name].extra] if METHODS[name].extra else ():  # type: ignore[index]
-        pytest.importorskip(module)
 
 
 @pytest.mark.parametrize("name", METHODS)
@@ -101,9 +97,9 @@ def test_learned_methods_say_which_extra_they_need(monkeypatch: pytest.MonkeyPat
 
 def test_a_trained_policy_by_file_and_by_folder(tmp_path: Path) -> None:
     pytest.importorskip("torch")
-    from mrta_zoo.policies.capam.config import NetworkConfig
-    from mrta_zoo.policies.sharing import build_network
-    from mrta_zoo.policies.weights import PolicyInfo, save_policy
+    from mrta_zoo.policies.neural.capam.config import NetworkConfig
+    from mrta_zoo.policies.neural.sharing import build_network
+    from mrta_zoo.policies.neural.weights import PolicyInfo, save_policy
 
     config = NetworkConfig(embedding=16, heads=2)
     save_policy(tmp_path / "policy.safetensors", build_network(config, "shared", 1, seed=0), PolicyInfo(network=config))
@@ -152,7 +148,7 @@ def test_any_method_can_be_polished() -> None:
 
 
 def test_the_search_has_what_the_method_leaves_of_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
-    polish = pytest.importorskip("mrta_zoo.policies.local_search.polish")
+    polish = pytest.importorskip("mrta_zoo.policies.classical.local_search.polish")
     scenario = seeded_scenarios(7, 1)[0]
     budgets = []
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from test_reinforce import FirstThingsFirst
 
 from mrta_zoo import mrta_v0
-from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.policies.sharing import build_network
+from mrta_zoo.policies.neural.capam.config import NetworkConfig
+from mrta_zoo.policies.neural.sharing import build_network
 from mrta_zoo.train.aec_reinforce import evaluate, train
 
 

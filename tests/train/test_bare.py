@@ -16,10 +16,11 @@ import pytest
 from sentences import check_sentence
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.train import bare, checkpoint, experts, imitator
+from mrta_zoo.policies.neural.capam.config import NetworkConfig
+from mrta_zoo.train import bare, checkpoint
 from mrta_zoo.train.config import TrainConfig
-from mrta_zoo.train.experts import make_shard
+from mrta_zoo.train.imitation import experts, imitator
+from mrta_zoo.train.imitation.experts import make_shard
 from mrta_zoo.train.presets import PRESETS
 from mrta_zoo.train.reinforce import Reinforce
 

@@ -17,13 +17,13 @@ import torch
 from filelock import FileLock
 from torch import Tensor
 
+from mrta_zoo.cli.train import train_command
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.lock import lock_folder
-from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.policies.neural import load_policy
-from mrta_zoo.policies.weights import read_tensors, write_tensors
+from mrta_zoo.policies.neural.capam.config import NetworkConfig
+from mrta_zoo.policies.neural.policy import load_policy
+from mrta_zoo.policies.neural.weights import read_tensors, write_tensors
 from mrta_zoo.train import checkpoint
-from mrta_zoo.train.cli import train_command
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.reinforce import Reinforce, Validation
 
@@ -72,7 +72,7 @@ def test_killed_run_resumes_to_the_same_bits(tmp_path: Path) -> None:
     train_command([*arguments, "--out", str(tmp_path / "straight")])
 
     killed = tmp_path / "killed"
-    command = [sys.executable, "-m", "mrta_zoo.train.cli", *arguments, "--out", str(killed)]
+    command = [sys.executable, "-m", "mrta_zoo.cli.train", *arguments, "--out", str(killed)]
     process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
     try:
         until = time.monotonic() + 60
@@ -350,7 +350,7 @@ def test_weights_that_are_not_finite_are_refused(tmp_path: Path) -> None:
     run.validate()
     with torch.no_grad():
         next(run.network.parameters())[0] = float("nan")
-    from mrta_zoo.policies.weights import save_policy
+    from mrta_zoo.policies.neural.weights import save_policy
 
     save_policy(tmp_path / "policy.safetensors", run.network, checkpoint.policy_info(run, 0.0))
     with pytest.raises(ConfigError, match="not finite"):

@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from mrta_zoo.cli.train import train_command
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.policies.neural import load_policy
-from mrta_zoo.train import bare, experts, plans
-from mrta_zoo.train.cli import train_command
+from mrta_zoo.policies.neural.policy import load_policy
+from mrta_zoo.train import bare
 from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.imitation import experts, plans
 
 TINY = [
     "--preset",

@@ -15,18 +15,18 @@ from factories import hopeless_scenario, small_scenario
 from mrta_zoo.batch import BatchMission, ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.mission import Mission
-from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.policies.capam.inputs import Tasks
-from mrta_zoo.policies.rollout import Segment, roll_out
-from mrta_zoo.policies.sharing import Network, build_network
-from mrta_zoo.policies.temperature import tempered
+from mrta_zoo.policies.neural.capam.config import NetworkConfig
+from mrta_zoo.policies.neural.capam.inputs import Tasks
+from mrta_zoo.policies.neural.rollout import Segment, roll_out
+from mrta_zoo.policies.neural.sharing import Network, build_network
+from mrta_zoo.policies.neural.temperature import tempered
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.train import graphed_rollout
 from mrta_zoo.train.cuda_graph import tensors
-from mrta_zoo.train.experts import ExpertPlan
 from mrta_zoo.train.gradients import accumulate_gradients
 from mrta_zoo.train.graphed_rollout import GraphedRollout
-from mrta_zoo.train.imitation import PlanBatch, follow
+from mrta_zoo.train.imitation.decisions import PlanBatch, follow
+from mrta_zoo.train.imitation.experts import ExpertPlan
 
 ATTENTION = NetworkConfig(embedding=16, heads=2)
 CANDIDATES = replace(ATTENTION, decoder="candidates", decision_layers=1, candidates=8, peers=2)

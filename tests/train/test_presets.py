@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from mrta_zoo.cli.train import parse, train_command
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.train.cli import parse, train_command
 from mrta_zoo.train.presets import PRESETS
 
 

@@ -16,10 +16,10 @@ from mrta_zoo import Scenario
 from mrta_zoo.batch import BatchMission, ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator
-from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.policies.capam.inputs import Moments, Tasks
-from mrta_zoo.policies.rollout import roll_out
-from mrta_zoo.policies.sharing import build_network
+from mrta_zoo.policies.neural.capam.config import NetworkConfig
+from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.rollout import roll_out
+from mrta_zoo.policies.neural.sharing import build_network
 from mrta_zoo.train import reinforce
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.gradients import accumulate_gradients

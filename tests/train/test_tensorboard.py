@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
+from mrta_zoo.cli.train import train_command
 from mrta_zoo.train import checkpoint
-from mrta_zoo.train.cli import train_command
 from mrta_zoo.train.reinforce import Reinforce
 
 ARGUMENTS = shlex.split(

@@ -8,13 +8,13 @@ from typing import Any, Literal
 import torch
 from torch import Tensor, nn
 
-from mrta_zoo.policies.actor_critic import ActorCritic
-from mrta_zoo.policies.capam.config import NetworkConfig
-from mrta_zoo.policies.neural import NeuralPolicy
+from mrta_zoo.env.settings import ObservationForm
+from mrta_zoo.policies.neural.actor_critic import ActorCritic
+from mrta_zoo.policies.neural.capam.config import NetworkConfig
+from mrta_zoo.policies.neural.policy import NeuralPolicy
+from mrta_zoo.policies.neural.sharing import IndependentNetworks, build_network
+from mrta_zoo.policies.neural.weights import PolicyInfo
 from mrta_zoo.policies.protocol import Policy
-from mrta_zoo.policies.sharing import IndependentNetworks, build_network
-from mrta_zoo.policies.weights import PolicyInfo
-from mrta_zoo.settings import ObservationForm
 
 Kind = Literal["mlp", "capam"]
 FORM: dict[Kind, ObservationForm] = {"mlp": "masked", "capam": "dict"}

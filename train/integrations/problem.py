@@ -10,12 +10,12 @@ import numpy as np
 import numpy.typing as npt
 import tyro
 
+from mrta_zoo.env.settings import ObservationForm
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.aec_loop import run_in_environment
-from mrta_zoo.policies.heuristics import NearestPolicy, RandomPolicy
+from mrta_zoo.policies.classical.heuristics import NearestPolicy, RandomPolicy
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.scenario import Scenario
-from mrta_zoo.settings import ObservationForm
 from mrta_zoo.verify import verify
 
 TASKS, ROBOTS = 10, 2

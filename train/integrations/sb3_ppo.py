@@ -11,8 +11,8 @@ from sb3_contrib import MaskablePPO
 from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv
 
-from mrta_zoo.gym_view import ActingRobotEnv
-from mrta_zoo.settings import ObservationForm
+from mrta_zoo.env.gym_view import ActingRobotEnv
+from mrta_zoo.env.settings import ObservationForm
 from mrta_zoo.train.integrations.problem import options, show
 
 

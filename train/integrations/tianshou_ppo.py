@@ -19,7 +19,7 @@ from tianshou.trainer import OnPolicyTrainerParams
 from torch import Tensor, nn
 from torch.distributions import Categorical
 
-from mrta_zoo.gym_view import ActingRobotEnv
+from mrta_zoo.env.gym_view import ActingRobotEnv
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.train.integrations.networks import FORM, Kind, as_policy, build
 from mrta_zoo.train.integrations.problem import TASKS, options, show

@@ -19,7 +19,7 @@ from torchrl.objectives import ClipPPOLoss
 from torchrl.objectives.value import GAE
 
 from mrta_zoo import mrta_v0
-from mrta_zoo.observation import split
+from mrta_zoo.env.observation import split
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.train.integrations.networks import Kind, as_policy, build
 from mrta_zoo.train.integrations.problem import ROBOTS, TASKS, options, show

@@ -1,0 +1,142 @@
+"""Differences between variants, with intervals that know of both sources of chance: training runs and scenarios.
+
+A difference is that of means over runs and scenarios. Its variance is estimated as the sum of
+
+- s² · Σ c²/n, where c is +1 or −1 for the two variants, n their numbers of runs, and s² the variance between runs of
+  the same variant, pooled as in a one-way analysis of variance over those variants of a question that scatter alike,
+  which are taken to be those with the same decoder: 4 such variants with two seeds have 4 degrees of freedom, not 1;
+- the variance, over scenarios, of the difference (runs averaged), divided by their number, within each number of
+  robots, which is part of the design. It is what pairing by scenario gains.
+
+The interval is Student's with Satterthwaite's degrees of freedom: where the runs' scatter dominates, 3 for 2 seeds of 3
+variants, so that t is 3.2 instead of 1.96. It is not a hierarchical bootstrap because that resamples seeds, too: of two
+runs it sees half of their variance, and its interval would pretend to know what it does not. An interval from the two
+variants' own runs alone would have 2 degrees of freedom or fewer and say next to nothing. Pooling buys more at the
+price of that assumption. That runs of equal seeds draw equal training scenarios is not used. The scatter of runs that
+is due to the number of scenarios being finite is counted in both terms, which makes intervals a little wider, not
+narrower. Simulated with two seeds, 95 to 97 of 100 intervals hold the true difference where runs scatter alike, and 90
+where a variant that is alone with its decoder scatters four times as much as the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from mrta_zoo.eval.significance import ALL_EQUAL, LEVEL, TOO_FEW, Estimate, Values
+from mrta_zoo.eval.studies.rows import RunRow
+
+Runs = Mapping[int, Mapping[int, Values]]
+"""By seed, then by number of robots: % completed of each scenario, in the order of the scenarios."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Effect:
+    """A difference, in percentage points. What does not apply is None, and the difference's note says why.
+
+    Attributes:
+        difference: with its interval; n is the number of runs.
+        p: of no difference, two-sided.
+        runs_error: standard error that comes from the training runs.
+        scenarios_error: standard error that comes from the scenarios.
+        freedom: degrees of freedom of the interval.
+    """
+
+    difference: Estimate
+    p: float | None = None
+    runs_error: float | None = None
+    scenarios_error: float | None = None
+    freedom: float | None = None
+
+
+def arrange(rows: Iterable[RunRow]) -> dict[tuple[str, str], dict[int, dict[int, Values]]]:
+    """The runs of each (variant, distribution)."""
+    lists: dict[tuple[str, str], dict[int, dict[int, list[tuple[int, float]]]]] = {}
+    for row in rows:
+        seeds = lists.setdefault((row.variant, row.distribution), {})
+        seeds.setdefault(row.seed, {}).setdefault(row.robots, []).append(
+            (row.scenario, 100 * row.completed / row.tasks)
+        )
+    return {
+        key: {
+            seed: {robots: np.array([value for _, value in sorted(found)]) for robots, found in of_seed.items()}
+            for seed, of_seed in seeds.items()
+        }
+        for key, seeds in lists.items()
+    }
+
+
+def equal_weights(robots: Sequence[int]) -> dict[int, float]:
+    """The mean over numbers of robots."""
+    return {each: 1 / len(robots) for each in robots}
+
+
+def run_values(runs: Runs, weights: Mapping[int, float]) -> list[float]:
+    """Of each run the weighted sum of its means by number of robots."""
+    return [
+        sum(weight * float(run[robots].mean()) for robots, weight in weights.items()) for _, run in sorted(runs.items())
+    ]
+
+
+def effect_of(
+    pool: Mapping[str, Runs],
+    coefficients: Mapping[str, float],
+    weights: Mapping[int, float],
+    alike: Mapping[str, str] | None = None,
+) -> Effect:
+    """A weighted sum of variants, such as one minus another.
+
+    Args:
+        pool: the variants whose runs say how much runs scatter, all those of `coefficients` among them.
+        coefficients: of the variants.
+        weights: of the numbers of robots.
+        alike: a name for each variant of the pool, the same for those that scatter alike; by default all do.
+    """
+    values = {name: run_values(runs, weights) for name, runs in pool.items()}
+    mean = sum(c * float(np.mean(values[name])) for name, c in coefficients.items())
+    count = sum(len(values[name]) for name in coefficients)
+    terms = _terms_of_runs(values, coefficients, alike or dict.fromkeys(pool, ""))
+    if terms is None:
+        return Effect(difference=Estimate(mean, None, None, count, TOO_FEW))
+    of_runs = sum(term for term, _ in terms)
+    for robots, weight in weights.items():
+        differences = sum(
+            c * np.mean([run[robots] for run in pool[name].values()], axis=0) for name, c in coefficients.items()
+        )
+        size = len(differences)
+        terms.append((weight**2 * float(np.var(differences, ddof=1)) / size, size - 1))
+    variance = sum(term for term, _ in terms)
+    if variance <= 0:
+        return Effect(difference=Estimate(mean, mean, mean, count, ALL_EQUAL))
+    error = float(np.sqrt(variance))
+    satterthwaite = variance**2 / sum(term**2 / of for term, of in terms)
+    half = float(stats.t.ppf((1 + LEVEL) / 2, satterthwaite)) * error
+    return Effect(
+        difference=Estimate(mean, mean - half, mean + half, count),
+        p=float(2 * stats.t.sf(abs(mean) / error, satterthwaite)),
+        runs_error=float(np.sqrt(of_runs)),
+        scenarios_error=float(np.sqrt(variance - of_runs)),
+        freedom=float(satterthwaite),
+    )
+
+
+def _terms_of_runs(
+    values: Mapping[str, list[float]], coefficients: Mapping[str, float], alike: Mapping[str, str]
+) -> list[tuple[float, int]] | None:
+    """What the scatter of runs adds to the variance, with its degrees of freedom, for each kind of variants.
+
+    None if some kind has one run of each variant, so that nobody knows.
+    """
+    terms = []
+    for kind in dict.fromkeys(alike[name] for name in coefficients):
+        members = [each for name, each in values.items() if alike[name] == kind]
+        freedom = sum(len(each) - 1 for each in members)
+        if freedom < 1:
+            return None
+        scatter = sum(float(np.sum((np.array(each) - np.mean(each)) ** 2)) for each in members) / freedom
+        share = sum(c**2 / len(values[name]) for name, c in coefficients.items() if alike[name] == kind)
+        terms.append((scatter * share, freedom))
+    return terms

@@ -1,0 +1,1 @@
+"""The command line, ``mrta-zoo``: one file for each command."""

@@ -1,0 +1,135 @@
+"""The command ``mrta-zoo replay``: its flags, and where the episodes come from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Annotated
+
+from tyro.conf import Positional, arg
+
+from mrta_zoo.cli.commands import METHOD_HELP, PlanningFlags, agent_file, policy_files
+from mrta_zoo.cli.flags import names, optional, parse
+from mrta_zoo.cli.plan_files import PLAN, TRACE, check_name, is_episode, named, read_episode
+from mrta_zoo.debug.recorder import record
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.io import read_scenario, read_trace
+from mrta_zoo.io.destination import check_destination, check_distinct
+from mrta_zoo.io.json_format import json_kind
+from mrta_zoo.io.outputs import Outputs
+from mrta_zoo.policies.cpu_threads import cpu_threads
+from mrta_zoo.scenario import Scenario
+from mrta_zoo.show.replay.page import MOST_SIDES, write_replay
+from mrta_zoo.show.terminal.console import preparing, results_console, say
+from mrta_zoo.trace import Trace
+
+DEFAULT = "capam-plus"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Replay:
+    """Make a page that replays an episode in a browser, or two of the same scenario side by side.
+
+    Map with a time slider, who does what when, completion over time, and at each decision the tasks there were, with
+    the policy's probabilities. One file, which needs no network.
+
+    For example:
+      mrta-zoo replay group1/r11a7i00.txt --policy capam-plus,nearest
+      mrta-zoo replay plan.json --scenario group1/r11a7i00.txt
+      mrta-zoo replay session.json --policy eils --budget 1 --out both.html
+    """
+
+    source: Annotated[Positional[Path], arg(metavar="SCENARIO|PLAN.json|TRACE.json")]
+    """A mission: a TAPTC task file, or a scenario in .json or .csv. Or an episode: a trace, or a plan (with
+    --scenario)."""
+    scenario: Annotated[Path | None, optional("SCENARIO")] = None
+    """The mission that a plan was made for."""
+    agents: Annotated[Path | None, optional("AGENTFILE")] = None
+    """The robots: a TAPTC agent file, or .csv. Without it they are with the tasks or, for TAPTC, in agent/ beside
+    them."""
+    policy: Annotated[
+        str | None,
+        arg(
+            metavar="METHOD[,METHOD]",
+            help_behavior_hint="",
+            help=f"Who decides; {DEFAULT} by default, for a mission. Two are shown side by side, as are an episode and "
+            f"a method. A .json plan or trace, or a method. {METHOD_HELP}",
+        ),
+    ] = None
+    out: Annotated[Path, arg(metavar="PAGE.html")] = Path("replay.html")
+    """Where to write the page."""
+    planning: Annotated[PlanningFlags, arg(name="")] = field(default_factory=PlanningFlags)
+
+
+def replay_command(argv: Sequence[str]) -> None:
+    """Run `mrta-zoo replay` with these arguments.
+
+    Raises:
+        MrtaError: if an option cannot be used, a file cannot be read or written, or a method fails.
+    """
+    command = parse(Replay, argv, "replay")
+    check_destination(command.out)
+    kind = json_kind(command.source)
+    chosen = names(command.policy, "policy") if command.policy is not None else [DEFAULT]
+    if command.policy is None and kind in (PLAN, TRACE):
+        chosen = []
+    files = {f"the file {name}": Path(name) for name in chosen if is_episode(name)}
+    for name in chosen:
+        files |= policy_files(name)
+    inputs = {
+        "the source": command.source,
+        "--scenario": command.scenario,
+        "the agent file": agent_file(command.scenario or command.source, command.agents),
+    }
+    check_distinct({"--out": command.out}, {**inputs, **files})
+    sides = len(chosen) + (kind in (PLAN, TRACE))
+    if sides > MOST_SIDES:
+        raise ConfigError(f"that makes {sides} episodes; expected {MOST_SIDES} at most, side by side")
+    scenario, given = _source(command, kind)
+    with preparing("plays the episodes"), cpu_threads(command.planning.threads):
+        traces = [*given, *(_episode(scenario, name, command.planning) for name in chosen)]
+    with Outputs() as outputs:
+        outputs.write("page", command.out, lambda path: write_replay(traces, path))
+    shown = " and ".join(trace.method or "an unnamed method" for trace in traces)
+    size = command.out.stat().st_size / 1e6
+    say(
+        results_console(),
+        f"{scenario.name}: {shown} replayed in {command.out} ({size:.1f} MB); open it in a browser",
+    )
+
+
+def _source(command: Replay, kind: str) -> tuple[Scenario, list[Trace]]:
+    """The mission, and its episode if the source is one."""
+    if kind == TRACE:
+        for flag, path in (("--scenario", command.scenario), ("--agents", command.agents)):
+            if path is not None:
+                raise ConfigError(f"{flag} is given with a trace, which holds its scenario; expected one of them")
+        trace = read_trace(command.source)
+        return trace.scenario, [trace]
+    if kind == PLAN:
+        if command.scenario is None:
+            raise ConfigError(
+                f"{command.source} is a plan, which does not hold its scenario; expected --scenario SCENARIO"
+            )
+        scenario = read_scenario(command.scenario, command.agents)
+        return scenario, [_of_file(command.source, scenario, command.planning)]
+    if command.scenario is not None:
+        raise ConfigError(f"--scenario is given, and {command.source} is no plan; expected a plan, or no --scenario")
+    return read_scenario(command.source, command.agents), []
+
+
+def _episode(scenario: Scenario, name: str, planning: PlanningFlags) -> Trace:
+    """What a method, or a file of it, makes of the scenario."""
+    if is_episode(name):
+        return _of_file(Path(name), scenario, planning)
+    return record(scenario, name, **asdict(planning))
+
+
+def _of_file(path: Path, scenario: Scenario, planning: PlanningFlags) -> Trace:
+    episode = read_episode(path)
+    if isinstance(episode, Trace):
+        return episode
+    check_name(path, episode, scenario)
+    with named(path):
+        return Trace.of_plan(scenario, episode, planning.mask_rule)

@@ -1,0 +1,189 @@
+"""The command ``mrta-zoo step``: its flags, and where the episode comes from."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, nullcontext
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+from tyro.conf import Positional, arg
+
+from mrta_zoo.cli.commands import METHOD_HELP, PlanningFlags
+from mrta_zoo.cli.flags import optional, parse
+from mrta_zoo.cli.plan_files import read_any_plan
+from mrta_zoo.debug.advisors import Advisor, make_advisor
+from mrta_zoo.debug.session import Session
+from mrta_zoo.debug.stepper import Stepper
+from mrta_zoo.debug.terminal import interact, run_script
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.generators import TaptcGenerator
+from mrta_zoo.io import read_scenario, read_trace
+from mrta_zoo.io.destination import check_destination, check_distinct
+from mrta_zoo.io.outputs import Outputs
+from mrta_zoo.io.source import decode, read_text
+from mrta_zoo.policies.cpu_threads import cpu_threads
+from mrta_zoo.policies.registry import method_names
+from mrta_zoo.scenario import Scenario
+from mrta_zoo.show.terminal.console import PIPED_WIDTH, LiteralConsole, preparing
+from mrta_zoo.trace import Trace
+
+NOBODY = "none"
+DEFAULT = "capam-plus"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step:
+    """Go through an episode one decision at a time, back and forth, and choose otherwise.
+
+    Shows whose turn it is, and every task as that robot sees it: distance, travel, finish, slack, why it may not be
+    chosen, the policy's probability, who else could do it; at the end also the cost (Eq. 1 of the paper: the sum of
+    finish / deadline over the tasks missed). Enter takes the policy's choice, a name or number another task; ? lists
+    the commands. Works over ssh, in 80 x 24.
+
+    For example:
+      mrta-zoo step group1/r11a7i00.txt
+      mrta-zoo step mission.json --policy plan.json --session session.json
+      mrta-zoo step --seed 3 --policy nearest --script commands.txt
+    """
+
+    scenario: Annotated[Positional[Path | None], arg(metavar="[SCENARIO]", help_behavior_hint="")] = None
+    """The mission: a TAPTC task file, or a scenario in .json or .csv. Without it one like the published cases is drawn
+    with --seed."""
+    agents: Annotated[Path | None, optional("AGENTFILE")] = None
+    """The robots: a TAPTC agent file, or .csv. Without it they are in SCENARIO or, for TAPTC, in agent/ beside it."""
+    policy: Annotated[
+        str | None,
+        arg(
+            metavar="METHOD",
+            help_behavior_hint="",
+            help=f"Whose advice to hear; {DEFAULT} by default, or what a session had. A .json plan or trace, {NOBODY}, "
+            f"or a method. Methods other than policies plan once, at the start. {METHOD_HELP}",
+        ),
+    ] = None
+    script: Annotated[str | None, optional("FILE|-")] = None
+    """Commands, one a line, in place of a terminal; - is standard input. Ends with code 2 at the first that fails."""
+    session: Annotated[Path | None, optional("SESSION.json")] = None
+    """Go on with the session, or any trace, in this file, if there is one; and save there on leaving. A scenario given
+    besides must be the session's."""
+    planning: Annotated[PlanningFlags, arg(name="")] = field(default_factory=PlanningFlags)
+
+
+def step_command(argv: Sequence[str]) -> None:
+    """Run `mrta-zoo step` with these arguments.
+
+    Raises:
+        MrtaError: if an option cannot be used, a file cannot be read or written, or a command of a script fails.
+    """
+    command = parse(Step, argv, "step")
+    script = _script(command)
+    if command.session:
+        check_destination(command.session)
+        check_distinct({"--session": command.session}, {"the scenario": command.scenario})
+    with cpu_threads(command.planning.threads), hangups_raised() if command.session else nullcontext():
+        session = _begin(command)
+        try:
+            if script is None:
+                interact(session, LiteralConsole(file=sys.stdout))
+            else:
+                source, lines = script
+                console = LiteralConsole(file=sys.stdout, width=PIPED_WIDTH, no_color=True)
+                run_script(session, lines, source, console)
+        finally:  # also after Ctrl-C
+            if command.session and session.path:  # another one, if it was loaded
+                with Outputs() as outputs:
+                    outputs.write("session", session.path, session.stepper.save)
+                if script is None:
+                    print(f"saved; go on with: mrta-zoo step --session {session.path}")
+
+
+@contextmanager
+def hangups_raised() -> Iterator[None]:
+    """A lost connection or a request to end raises SystemExit meanwhile, so that what is to be saved is saved.
+
+    Signals that somebody else handles, or ignores, are left to them, and in a thread, which cannot handle any, all are.
+    """
+
+    def end(number: int, _: object) -> None:
+        sys.exit(128 + number)
+
+    numbers = [getattr(signal, name) for name in ("SIGHUP", "SIGTERM") if hasattr(signal, name)]
+    mine = [number for number in numbers if signal.getsignal(number) == signal.SIG_DFL]
+    if threading.current_thread() is not threading.main_thread():
+        mine = []
+    for number in mine:
+        signal.signal(number, end)
+    try:
+        yield
+    finally:
+        for number in mine:
+            signal.signal(number, signal.SIG_DFL)
+
+
+def _begin(command: Step) -> Session:
+    """The session as the flags have it begin."""
+    resumed: Trace | None = None
+    if command.session and os.path.exists(command.session) and os.path.getsize(command.session):
+        resumed = read_trace(command.session)
+        if command.scenario is not None and _scenario(command) != resumed.scenario:
+            raise ConfigError(
+                f"{command.session} is there already, a session on {resumed.scenario.name or 'another mission'}, "
+                f"which is not {command.scenario}; leave out the scenario to go on with it, or name another file"
+            )
+    with preparing():
+        if resumed is None:
+            scenario = _scenario(command)
+            advisor = _advisor(scenario, command.policy or DEFAULT, command.planning)
+            rule = {"mask_rule": command.planning.mask_rule} if command.planning.mask_rule else {}
+            return Session(Stepper(scenario, advisor, **rule), advisor, command.session)
+        advisor = _advisor_again(resumed, command.policy, command.planning)
+        return Session(Stepper.resume(resumed, advisor), advisor, command.session)
+
+
+def _scenario(command: Step) -> Scenario:
+    if command.scenario is not None:
+        return read_scenario(command.scenario, command.agents)
+    if command.agents is not None:
+        raise ConfigError("--agents is given without a scenario; expected SCENARIO --agents AGENTFILE")
+    seed = command.planning.seed
+    return TaptcGenerator()(np.random.default_rng(seed), f"drawn with seed {seed}")
+
+
+def _advisor(scenario: Scenario, name: str, planning: PlanningFlags) -> Advisor | None:
+    if name == NOBODY:
+        return None
+    plan = read_any_plan(Path(name), scenario)
+    if plan is not None:
+        return make_advisor(scenario, plan, mask_rule=planning.mask_rule)
+    return make_advisor(scenario, name, **asdict(planning))
+
+
+def _advisor_again(trace: Trace, name: str | None, planning: PlanningFlags) -> Advisor | None:
+    """The one that the flags name, or else the one that a session had, as it was."""
+    if name is not None:
+        return _advisor(trace.scenario, name, planning)
+    if trace.method not in method_names():
+        return None
+    options = asdict(planning) | {"mask_rule": trace.mask_rule, "decode": trace.decode or planning.decode}
+    if trace.seed is not None:
+        options["seed"] = trace.seed
+    return make_advisor(trace.scenario, trace.method, **options)
+
+
+def _script(command: Step) -> tuple[str, list[str]] | None:
+    """What messages call the script, and its lines; None to ask at the terminal."""
+    if command.script is not None and command.script != "-":
+        return command.script, read_text(command.script, ConfigError, "commands, one a line").split("\n")
+    if sys.stdin is None:
+        raise ConfigError("standard input is closed; expected a terminal, commands there, or --script FILE")
+    if command.script == "-" or not sys.stdin.isatty():
+        bytes_of = getattr(sys.stdin, "buffer", None)  # read as files are, whatever the terminal's encoding
+        text = sys.stdin.read() if bytes_of is None else decode(bytes_of.read(), "standard input", ConfigError)
+        return "standard input", text.split("\n")
+    return None

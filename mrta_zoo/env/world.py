@@ -1,0 +1,235 @@
+"""What the AEC and the parallel environment share: the mission under way, who sees what, and why tasks are masked.
+
+Knows robots by index and nothing of turns; `aec.AecMrtaEnv` and `parallel.ParallelMrtaEnv` add PettingZoo's books.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from gymnasium import spaces
+
+from mrta_zoo.env.observation import FloatTable, Observer, flat_space, observation_space, state_space
+from mrta_zoo.env.rewards import as_rewards
+from mrta_zoo.env.settings import Settings
+from mrta_zoo.errors import ActionError, ConfigError, OutOfBoundsError
+from mrta_zoo.mission import Finished, Mission
+from mrta_zoo.rules import MaskReason
+from mrta_zoo.scenario import Scenario
+
+Info = dict[str, Any]
+
+# As plain integers, which are faster to look up and compare than members of an enumeration.
+_CHOOSABLE, _TAKEN, _NO_TASK = int(MaskReason.CHOOSABLE), int(MaskReason.TAKEN), int(MaskReason.NO_TASK)
+
+
+class World:
+    """The scenario of an episode and the mission on it.
+
+    Attributes:
+        settings: the environment's options, all filled in.
+        num_actions: of every agent; whether an action is one is judged by this, not by the spaces handed out.
+        names: names of the possible agents, ``robot_0`` to ``robot_{max_robots-1}``.
+        agents: names of those that are there in the current episode: the scenario's and, with ``absent="noop"``, all.
+        index: robot index of each name.
+        action_spaces: for each name ``Discrete(num_actions)``, each an object of its own so that it has its own seed.
+        observation_space: the space of every agent's observations.
+        state_space: the space of `state`.
+        completed: number of tasks completed by the clock.
+    """
+
+    def __init__(self, settings: Settings, num_actions: int) -> None:
+        assert settings.max_tasks is not None
+        assert settings.max_robots is not None
+        n, m = settings.max_tasks, settings.max_robots
+        self.settings = settings
+        self.max_tasks = n
+        self.num_actions = num_actions
+        self.names = [f"robot_{robot}" for robot in range(m)]
+        self.index = {name: robot for robot, name in enumerate(self.names)}
+        self.action_spaces = {name: spaces.Discrete(num_actions) for name in self.names}
+        self.observation_space = self._space(num_actions)
+        self.state_space = state_space(n, m)
+        self.agents: list[str] = []
+        self.completed = 0
+        self._rng: np.random.Generator | None = None
+        self._mission: Mission | None = None
+
+    @property
+    def mission(self) -> Mission:
+        """The mission under way."""
+        if self._mission is None:
+            raise ActionError("there is no mission yet; call reset() first")
+        return self._mission
+
+    def reset(self, seed: int | None, options: dict[str, Any] | None) -> list[float]:
+        """Start the next episode and return each agent's reward for it, which is not 0 if it ends at once."""
+        scenario = _scenario_option(options)
+        if seed is not None:
+            self._rng = _seeded(seed)
+        elif self._rng is None:
+            self._rng = np.random.default_rng()
+        if scenario is None:
+            scenario = self.settings.draw(self._rng)
+        else:
+            self.settings.check_fits(scenario)
+        self._mission = mission = Mission(scenario, self.settings.mask_rule)
+        self._observer = Observer(scenario, self.max_tasks, len(self.names), self.settings.mask_rule)
+        self._looked = False
+        n, m = scenario.num_tasks, scenario.num_robots
+        self.agents = self.names[:m] if self.settings.absent == "omit" else list(self.names)
+        self.completed = 0
+        self._decided = [0.0] * len(self.agents)
+        # Kept up to date by `take`: only the row of the robot and the column of the task change.
+        self._reasons = np.full((len(self.agents), self.max_tasks), _NO_TASK, dtype=np.int8)
+        for robot in range(m):
+            self._reasons[robot, :n] = mission.reasons(robot)
+        return self._reward([])
+
+    def take(self, robot: int, task: int) -> None:
+        """Let a free robot take a task; `advance` moves the clock.
+
+        Raises:
+            ActionError: if it may not.
+        """
+        mission = self.mission
+        mission.take(robot, task)
+        self._decided[robot] = mission.time
+        self._reasons[: mission.scenario.num_robots, task] = _TAKEN
+        self._reasons[robot, : mission.scenario.num_tasks] = mission.reasons(robot)
+
+    def advance(self) -> list[float]:
+        """Move the clock to the next robot to act and return each agent's reward."""
+        finished = self.mission.advance()
+        self._looked = False
+        for event in finished:
+            self.completed += event.completed
+        return self._reward(finished)
+
+    def infos(self) -> dict[str, Info]:
+        """Fresh infos of every agent, see `mrta_v0`."""
+        reasons = self._reasons.copy()
+        masks = (reasons == _CHOOSABLE).view(np.int8)
+        time = self.mission.time
+        completed = self.completed
+        return {
+            name: {
+                "time": time,
+                "elapsed": time - decided,
+                "completed": completed,
+                "action_mask": mask,
+                "mask_reason": reason,
+            }
+            for name, decided, mask, reason in zip(self.agents, self._decided, masks, reasons, strict=True)
+        }
+
+    def retired(self, agent: str) -> bool:
+        """Whether an agent's robot is retired; one that the scenario does not have never is."""
+        robot, retired = self.index[agent], self.mission.retired
+        return robot < len(retired) and retired[robot]
+
+    def mask(self, robot: int) -> npt.NDArray[np.int8]:
+        """(max_tasks,) what `robot` may choose when next free; all 0 for one the scenario does not have."""
+        if robot >= len(self.agents):
+            return np.zeros(self.max_tasks, dtype=np.int8)
+        mask: npt.NDArray[np.int8] = (self._reasons[robot] == _CHOOSABLE).view(np.int8)
+        return mask
+
+    def seen_by(self, robot: int, mask: npt.NDArray[np.int8]) -> Any:
+        """What `robot` sees now, in the form that the settings ask for; `mask` goes with it in all but the flat one."""
+        self._look()
+        form = self.settings.observation
+        seen = self._observer.tables(robot) if form == "dict" else self._observer.flat(robot)
+        return seen if form == "flat" else {"observation": seen, "action_mask": mask}
+
+    def state(self) -> FloatTable:
+        """(S,) the global state."""
+        self._look()
+        return self._observer.state()
+
+    def robot(self, agent: str) -> int:
+        """Robot index of an agent.
+
+        Raises:
+            ActionError: if there can be no agent of that name.
+        """
+        try:
+            return self.index[agent]
+        except (KeyError, TypeError):
+            raise ActionError(f"there is no agent {agent!r}; they are {self.names[0]} to {self.names[-1]}") from None
+
+    def as_action(self, agent: str, action: Any) -> int:
+        """An action as a Python integer within the action space.
+
+        Raises:
+            OutOfBoundsError: if it is none.
+        """
+        return as_action(agent, action, self.num_actions)
+
+    def _space(self, num_actions: int) -> spaces.Space[Any]:
+        n, m = self.max_tasks, len(self.names)
+        tables, flat = observation_space(n, m, num_actions), flat_space(n, m)
+        if self.settings.observation == "masked":
+            return spaces.Dict([("observation", flat), ("action_mask", tables["action_mask"])])
+        return flat if self.settings.observation == "flat" else tables
+
+    def _look(self) -> None:
+        mission = self.mission
+        if not self._looked:
+            self._observer.look(mission)
+            self._looked = True
+
+    def _reward(self, finished: Sequence[Finished]) -> list[float]:
+        reward, robots = self.settings.reward, self.mission.scenario.num_robots
+        assert callable(reward)  # a name was replaced at construction
+        return as_rewards(reward(self.mission, finished), robots) + [0.0] * (len(self.agents) - robots)
+
+
+def as_action(agent: str, action: Any, num_actions: int) -> int:
+    """An action as a Python integer from 0 to ``num_actions - 1``.
+
+    Raises:
+        OutOfBoundsError: if it is none.
+    """
+    try:
+        number = operator.index(action)
+    except TypeError:
+        number = -1
+    if not 0 <= number < num_actions or isinstance(action, bool):
+        raise OutOfBoundsError(f"{agent} sent action {action!r}; expected a whole number from 0 to {num_actions - 1}")
+    return number
+
+
+def next_legal(mask: npt.NDArray[Any], action: int) -> int:
+    """The first action that the mask allows, from `action` on and then from 0."""
+    return int(np.roll(mask, -action).argmax() + action) % len(mask)
+
+
+def _scenario_option(options: dict[str, Any] | None) -> Scenario | None:
+    """The scenario in the options of `reset`, if there is one."""
+    if options is None:
+        return None
+    if not isinstance(options, Mapping):
+        raise ConfigError(f"reset's options is {options!r}; expected a dictionary such as {{'scenario': scenario}}")
+    for option in options:
+        # PettingZoo's contract tests pass {"options": 1} to every environment, so that this key has to be let by.
+        if option not in ("scenario", "options"):
+            raise ConfigError(f"reset has no option {option!r}; it has 'scenario'")
+    scenario = options.get("scenario")
+    if scenario is not None and not isinstance(scenario, Scenario):
+        raise ConfigError(f"reset's option 'scenario' is {scenario!r}; expected a mrta_zoo.Scenario")
+    return scenario
+
+
+def _seeded(seed: int) -> np.random.Generator:
+    try:
+        number = operator.index(seed)
+    except TypeError:
+        number = -1
+    if number < 0:
+        raise ConfigError(f"seed is {seed!r}; expected a whole number >= 0 or None")
+    return np.random.default_rng(number)

@@ -1,0 +1,94 @@
+"""Drawn scenarios as a folder of cases."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Literal, get_args
+
+from mrta_zoo.errors import ConfigError, ScenarioError
+from mrta_zoo.io import write_scenario, write_taptc
+from mrta_zoo.io.paths import check_no_url
+from mrta_zoo.scenario import Scenario
+
+CaseFormat = Literal["taptc", "json", "csv"]
+
+
+def write_case_folder(scenarios: Iterable[Scenario], folder: Path, file_format: CaseFormat) -> None:
+    """Write scenarios as a folder that `io.read_cases` reads; the whole folder or nothing.
+
+    TAPTC task files go to ``group1/NAME.txt`` and their agent files to ``agent/NAME.txt``, JSON and CSV files into the
+    folder itself.
+
+    Args:
+        scenarios: what to write, each with a name of its own that can be a file's.
+        folder: must not exist yet, or be empty; it may be the current one, or a link to one.
+        file_format: of the files.
+
+    Raises:
+        ConfigError: if the folder holds something or cannot be made, or there is no such format.
+        ScenarioError: if the format cannot express a scenario.
+    """
+    if file_format not in get_args(CaseFormat):
+        raise ConfigError(f"format is {file_format!r}; expected one of {', '.join(get_args(CaseFormat))}")
+    check_no_url(folder, ConfigError)
+    try:
+        if folder.is_dir() and any(folder.iterdir()):
+            raise ConfigError(f"{folder} is not empty; expected a new or empty folder")
+        if folder.exists() and not folder.is_dir():
+            raise ConfigError(f"{folder} is a file; expected a new or empty folder")
+        final = Path(os.path.realpath(folder))
+        new = not final.is_dir()
+        # Inside the folder or, if it is new, beside its place: where renaming cannot leave the file system.
+        workshop = final.parent if new else final
+        workshop.mkdir(parents=True, exist_ok=True)
+        partial = Path(tempfile.mkdtemp(prefix=".unfinished.", dir=workshop))
+    except OSError as error:
+        raise ConfigError(f"{folder} cannot be made: {(error.strerror or str(error)).lower()}") from None
+    try:
+        partial.chmod(0o777 & ~_umask())
+        for scenario in scenarios:
+            _write_case(scenario, partial, file_format)
+        if new:
+            os.replace(partial, final)
+        else:
+            _move_all(partial, final)
+    except ScenarioError as error:  # it names the file where it is now
+        raise ScenarioError(str(error).replace(str(partial), str(folder))) from None
+    except OSError as error:
+        raise ConfigError(f"{folder} cannot be written: {(error.strerror or str(error)).lower()}") from None
+    finally:
+        shutil.rmtree(partial, ignore_errors=True)
+
+
+def _write_case(scenario: Scenario, folder: Path, file_format: CaseFormat) -> None:
+    if file_format != "taptc":
+        write_scenario(scenario, folder / f"{scenario.name}.{file_format}")
+        return
+    for part in ("group1", "agent"):
+        (folder / part).mkdir(exist_ok=True)
+    file = f"{scenario.name}.txt"
+    write_taptc(scenario, folder / "group1" / file, folder / "agent" / file)
+
+
+def _move_all(source: Path, target: Path) -> None:
+    """Move what is in one folder into another, all of it or nothing."""
+    moved: list[Path] = []
+    try:
+        for path in sorted(source.iterdir()):
+            os.replace(path, target / path.name)
+            moved.append(target / path.name)
+    except BaseException:
+        for path in moved:
+            os.replace(path, source / path.name)
+        raise
+
+
+def _umask() -> int:
+    """The process's file mode mask; `tempfile` makes folders private, this one is for its user to share."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask

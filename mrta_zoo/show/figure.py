@@ -1,0 +1,93 @@
+"""Figures that show every text as it is written, and the formats in which they can be saved here.
+
+Needs matplotlib (``mrta_zoo[plot]``), which it uses without its global state.
+"""
+
+from __future__ import annotations
+
+import warnings
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.extras import require
+from mrta_zoo.io.atomic import replacing
+from mrta_zoo.io.paths import check_no_url, suffix_of
+
+try:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.text import Text
+except Exception:  # it is not there, or broken
+    require("plot", "a picture")
+    raise
+
+NOT_OFFERED = ("pgf", "raw", "rgba")
+"""Formats of matplotlib's in which every text is TeX, and which have no header: nothing opens them."""
+
+
+class LiteralFigure(Figure):
+    """A figure in which no text is markup: matplotlib takes dollar signs, which names may hold, for mathematics."""
+
+    def draw(self, renderer: Any) -> None:
+        """Draw all of it; letters that the font lacks become boxes."""
+        for text in self.findobj(Text):
+            text.set(parse_math=False, usetex=False)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Glyph .* missing from")
+            super().draw(renderer)
+
+
+def check_format(path: Path) -> None:
+    """Make sure that pictures can be written here in the format that the suffix says.
+
+    Raises:
+        ConfigError: if not, be it that there is no such format or that what writes it is not installed.
+    """
+    problem = _problem(_format_of(path))
+    if problem is not None:
+        expected = ", ".join(f".{name}" for name in sorted(_known()) if _problem(name) is None)
+        raise ConfigError(f"{path} has the suffix {path.suffix!r}{problem}; expected one of {expected}")
+
+
+def save_picture(figure: Figure, path: Path, **options: Any) -> None:
+    """Write a figure, whole or not at all, in the format that the suffix says: ``.png``, ``.svg``, ``.pdf``…
+
+    Args:
+        figure: to be written.
+        path: where to.
+        options: of matplotlib's `savefig`.
+
+    Raises:
+        ConfigError: if there is no such format here, or the file cannot be written.
+    """
+    check_no_url(path, ConfigError)
+    check_format(path)
+    try:
+        with replacing(path) as partial:
+            figure.savefig(partial, format=_format_of(path), **options)
+    except (OSError, ValueError) as error:  # ValueError: a null character in the path
+        reason = getattr(error, "strerror", None) or str(error)
+        raise ConfigError(f"{path} cannot be written: {reason.lower()}") from None
+
+
+def _format_of(path: Path) -> str:
+    return suffix_of(path)[1:]
+
+
+def _known() -> set[str]:
+    return set(FigureCanvasAgg.get_supported_filetypes()) - set(NOT_OFFERED)
+
+
+def _problem(format_: str) -> str | None:
+    """Why a format cannot be written, found by writing a little of it; None if it can."""
+    if format_ not in _known():
+        return ""
+    figure = LiteralFigure(figsize=(0.5, 0.5))
+    figure.text(0.5, 0.5, "a")
+    try:
+        figure.savefig(BytesIO(), format=format_)
+    except Exception as error:  # whatever the library that a format needs says of what it lacks
+        return f", which cannot be written here ({' '.join(str(error).split())})"
+    return None

@@ -1,0 +1,73 @@
+"""How scenarios, plans and scores show themselves in a notebook.
+
+The model does not know how it is shown: `attach`, called when the package is imported, gives each class the method
+``_repr_html_`` that notebooks look for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from mrta_zoo.plan import Plan
+from mrta_zoo.scenario import Scenario
+from mrta_zoo.show.markup import in_order, map_of, table
+from mrta_zoo.show.view import shown_box, shown_time
+from mrta_zoo.verify import COST, Score
+from mrta_zoo.wording import counted
+
+
+def scenario_html(scenario: Scenario) -> str:
+    """The ranges of what a scenario holds, and its map."""
+    rows = [
+        (what, f"{values.min():g}", f"{values.mean():.4g}", f"{values.max():g}")
+        for what, values in (
+            ("deadline", scenario.deadline), ("workload", scenario.workload),
+            ("capacity", scenario.capacity), ("speed", scenario.speed),
+        )
+    ]  # fmt: skip
+    (x, y), (width, height) = scenario.map_origin, scenario.map_size
+    begins = f" from {x:.12g}, {y:.12g}" if x or y else ""
+    title = f"{scenario.name}: {scenario.size}, map {width:g} by {height:g}{begins}"
+    tasks = [
+        (f"task {scenario.task_name(task)}", *place, due)
+        for task, (place, due) in enumerate(zip(scenario.task_xy.tolist(), scenario.deadline.tolist(), strict=True))
+    ]
+    robots = [(scenario.robot_name(robot), *place) for robot, place in enumerate(scenario.robot_xy.tolist())]
+    low, size = (tuple(each.tolist()) for each in shown_box(scenario))
+    picture = map_of(low, size, tasks, robots, shown_time(scenario, 0.0))
+    return table(title, ("", "least", "mean", "most"), rows) + picture
+
+
+def plan_html(plan: Plan) -> str:
+    """Each robot's tasks, in order."""
+    of = f" of {plan.scenario}" if plan.scenario else ""
+    by = f" by {plan.method}" if plan.method else ""
+    rows = [(robot, len(route), in_order(route) or "-") for robot, route in enumerate(plan.routes)]
+    title = f"Plan{of}{by}: {counted(sum(map(len, plan.routes)), 'task')} taken"
+    return table(title, ("robot", "tasks", "in this order"), rows)
+
+
+def score_html(score: Score) -> str:
+    """The scores, and what each robot did."""
+    title = (
+        f"{score.completed} of {counted(score.tasks, 'task')} completed ({100 * score.completion:.1f} %), "
+        f"cost {score.cost:.3f}, distance {score.distance:.1f}, makespan {score.makespan:.1f} (cost by {COST})"
+    )
+    tasks = score.task_names or range(score.tasks)
+    robots = score.robot_names or range(len(score.schedule))
+    rows = [
+        (robot, f"{sum(visit.completed for visit in visits)} of {len(visits)}",
+         visits[-1].finish if visits else "-", in_order(tasks[visit.task] for visit in visits) or "-")
+        for robot, visits in zip(robots, score.schedule, strict=True)
+    ]  # fmt: skip
+    return table(title, ("robot", "completed", "last finish", "tasks"), rows)
+
+
+FORMATTERS: dict[type, Callable[[Any], str]] = {Scenario: scenario_html, Plan: plan_html, Score: score_html}
+
+
+def attach() -> None:
+    """Let notebooks show each type by its entry in `FORMATTERS`."""
+    for shown, formatter in FORMATTERS.items():
+        shown._repr_html_ = formatter  # type: ignore[attr-defined]

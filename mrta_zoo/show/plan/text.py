@@ -1,0 +1,74 @@
+"""A plan as text for people: who does what and when."""
+
+from __future__ import annotations
+
+import math
+
+from mrta_zoo.left_out import Reason, left_out
+from mrta_zoo.plan import Plan
+from mrta_zoo.scenario import Scenario
+from mrta_zoo.show.terminal.sheet import Sheet
+from mrta_zoo.verify import COST, Score
+from mrta_zoo.wording import counted, listed
+
+WHY: dict[Reason, str] = {
+    "out of reach": "left out, out of reach (no robot could do them in time)",
+    "others were worth more": "left out, others were worth more",
+}
+
+
+def schedule_table(scenario: Scenario, score: Score) -> Sheet:
+    """A row for each task that is done, robot by robot; times in time units. What has no name is counted from 0."""
+    rows: list[tuple[str, ...]] = []
+    ends, digits = [], decimals(score.makespan, 2)
+    for robot, visits in enumerate(score.schedule):
+        name = scenario.robot_name(robot)
+        if not visits:
+            rows.append((name, "-", "-", "-", "-", "stays where it is"))
+        for visit in visits:
+            times = (f"{visit.arrival:.{digits}f}", f"{visit.finish:.{digits}f}", full(visit.deadline))
+            rows.append((name, scenario.task_name(visit.task), *times, "" if visit.completed else "late"))
+        ends.append(len(rows) - 1)
+    left = ("robot", "", *(("task",) if scenario.task_names else ()))
+    return Sheet("", ("robot", "task", "arrival", "finish", "deadline", ""), rows, left, ends)
+
+
+def proven(score: Score, bound: int | None) -> str:
+    """What is known of the best plan, on a line, given the most tasks that any plan can complete; empty if nothing."""
+    if bound is None:
+        return ""
+    if score.completed == bound:
+        return "proven optimal: no plan completes more tasks"
+    return f"not proven optimal: it may be; no plan completes more than {counted(bound, 'task')}"
+
+
+def decimals(largest: float, least: int) -> int:
+    """Digits after the point that leave the largest of some numbers three digits that count, but `least` of them."""
+    return max(least, 2 - math.floor(math.log10(largest))) if largest > 0 else least
+
+
+def full(time: float) -> str:
+    """A time as it was given, of which a large one keeps its last digits."""
+    return f"{time:g}" if time < 1e5 else f"{time:.12g}"
+
+
+def totals(score: Score) -> str:
+    """All scores, on three lines."""
+    visited = sum(len(visits) for visits in score.schedule)
+    return (
+        f"completed {score.completed} of {counted(score.tasks, 'task')} ({100 * score.completion:.1f} %), "
+        f"{visited - score.completed} late, {score.tasks - visited} not taken\n"
+        f"cost {score.cost:.3f} ({COST})\n"
+        f"distance {score.distance:.{decimals(score.distance, 1)}f}, "
+        f"makespan {score.makespan:.{decimals(score.makespan, 1)}f}"
+    )
+
+
+def missed(scenario: Scenario, plan: Plan, score: Score) -> list[str]:
+    """The tasks that a plan does not complete, by name, a line for each reason there is."""
+    tasks: dict[str, list[int]] = {
+        words: [each.task for each in left_out(scenario, plan) if each.reason == reason]
+        for reason, words in WHY.items()
+    }
+    tasks["finished late"] = [visit.task for visits in score.schedule for visit in visits if not visit.completed]
+    return [f"{words}: {listed(map(scenario.task_name, which))}" for words, which in tasks.items() if which]

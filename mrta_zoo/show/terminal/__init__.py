@@ -1,0 +1,1 @@
+"""Text at a terminal of any width."""

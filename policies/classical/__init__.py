@@ -1,0 +1,1 @@
+"""Methods that need no training: dispatching rules, matching, local search, exact and open solvers."""

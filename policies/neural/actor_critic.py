@@ -1,0 +1,77 @@
+"""A policy network with a value beside it, on batches of observations: what the PPO of other libraries trains."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+
+from mrta_zoo.env.observation import EGO_FEATURES, MISSION_FEATURES, ROBOT_FEATURES, TASK_FEATURES
+from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.sharing import Network
+
+
+class ActorCritic(nn.Module):
+    """Masked logits by a policy network, CapAM or any other that this package builds, and a value of its own.
+
+    Observations are the environment's Dict form as tensors, ``{"observation": {"tasks", "robots", "ego", "mission"},
+    "action_mask"}``, every one with the same leading dimensions (…), such as none, a batch, or time × robots. In the
+    parallel form the mask, and so the logits, have a column more, the no-op.
+
+    Nothing of the value enters `network`, which is what `weights.save_policy` writes and `neural.load_policy` loads.
+
+    Args:
+        network: scores the tasks, from `sharing.build_network` or `weights.load_weights`.
+        width: of the value's hidden layers.
+    """
+
+    def __init__(self, network: Network, width: int = 64) -> None:
+        super().__init__()
+        self.network = network
+        self.critic = Critic(width)
+
+    def forward(self, observation: Mapping[str, Any]) -> tuple[Tensor, Tensor]:
+        """Logits and values, as `logits` and `value`."""
+        return self.logits(observation), self.value(observation)
+
+    def logits(self, observation: Mapping[str, Any]) -> Tensor:
+        """(…, max_tasks) log-probabilities; the least finite number where the mask forbids, so that no NaN arises.
+
+        Where nothing may be chosen at all they are all equal.
+        """
+        tables, mask = observation["observation"], observation["action_mask"] > 0
+        leading, rows = mask.shape[:-1], tables["tasks"].shape[-2]
+        flat = {name: table.reshape(-1, *table.shape[len(leading) :]) for name, table in tables.items()}
+        moments = Moments.of_tables(flat, mask[..., :rows].reshape(-1, rows))
+        scores: Tensor = self.network(self.network.encode(Tasks.of_tables(flat)), moments).reshape(*leading, rows)
+        if mask.shape[-1] > rows:  # the parallel form: the no-op, where it is allowed, is all that is
+            noop = mask[..., rows:]
+            scores = torch.cat((scores.masked_fill(noop, -torch.inf), torch.where(noop, 0.0, -torch.inf)), -1)
+        return scores.clamp(min=torch.finfo(scores.dtype).min)
+
+    def value(self, observation: Mapping[str, Any]) -> Tensor:
+        """(…) what is expected of the rest of the mission."""
+        value: Tensor = self.critic(observation["observation"])
+        return value
+
+
+class Critic(nn.Module):
+    """The value of what a robot sees, whatever the order and number of tasks and peers: sums over sets.
+
+    Zaheer et al. 2017, Deep Sets.
+    """
+
+    def __init__(self, width: int) -> None:
+        super().__init__()
+        self.task = nn.Sequential(nn.Linear(len(TASK_FEATURES), width), nn.ReLU())
+        self.robot = nn.Sequential(nn.Linear(len(ROBOT_FEATURES), width), nn.ReLU())
+        others = len(EGO_FEATURES) + len(MISSION_FEATURES)
+        self.value = nn.Sequential(nn.Linear(2 * width + others, width), nn.ReLU(), nn.Linear(width, 1))
+
+    def forward(self, tables: Mapping[str, Tensor]) -> Tensor:
+        """(…) from tables with leading dimensions (…)."""
+        sets = self.task(tables["tasks"]).mean(-2), self.robot(tables["robots"]).mean(-2)
+        value: Tensor = self.value(torch.cat((*sets, tables["ego"], tables["mission"]), -1)).squeeze(-1)
+        return value

@@ -1,0 +1,73 @@
+"""The context: the state of the mission and the robots as one query vector (paper §III-B)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import torch
+from torch import Tensor, nn
+
+from mrta_zoo.policies.neural.capam.inputs import USUAL_CROSSINGS, Moments, Tasks
+from mrta_zoo.policies.neural.capam.named import Named, of_shape
+
+ContextFeature = Callable[[Tasks, Moments], Tensor]
+"""(S, G) numbers, one a decision; best about in [0, 1]."""
+
+CONTEXT_FEATURES: Named[ContextFeature] = Named("context_features", {})
+"""Features besides the paper's by the names that `NetworkConfig.context_features` lists, all of them users' own:
+``@CONTEXT_FEATURES.register("name")``."""
+
+
+class Context(nn.Module):
+    """The paper's five features: elapsed time, own capacity, own place, the peers' destinations and capacities.
+
+    The paper concatenates the peers, which fixes their number. Here each peer's destination and capacity pass one
+    shared layer, and mean and maximum over the peers are taken: any number of peers, in any order. The two scales
+    of the mission (`Tasks.horizon`, `Tasks.work_unit`) go along, since everything else is relative to them.
+
+    Args:
+        embedding: h, length of the query.
+        more: names of features in `CONTEXT_FEATURES` that go along.
+
+    Raises:
+        ConfigError: if there is no feature of some name.
+    """
+
+    OWN = 7
+    PEER = 5
+
+    def __init__(self, embedding: int, more: tuple[str, ...] = ()) -> None:
+        super().__init__()
+        self.more = {name: CONTEXT_FEATURES.find(name) for name in more}
+        self.own = nn.Linear(self.OWN + len(more), embedding)
+        self.peer = nn.Linear(self.PEER, embedding)
+        self.query = nn.Linear(3 * embedding, embedding)
+
+    def forward(self, tasks: Tasks, moments: Moments) -> Tensor:
+        """The query of each decision: (S, G, h)."""
+        own_xy = moments.of_ego(moments.xy)
+        shape, device = moments.elapsed.shape, moments.elapsed.device
+        horizon = tasks.horizon[:, None].expand_as(moments.elapsed)
+        work_unit = tasks.work_unit[:, None].expand_as(moments.elapsed)
+        own = torch.stack(
+            (
+                moments.elapsed,
+                moments.elapsed * horizon / USUAL_CROSSINGS,
+                horizon / USUAL_CROSSINGS,
+                work_unit,
+                moments.of_ego(moments.capacity),
+                *own_xy.unbind(-1),
+                *(
+                    of_shape("context feature", name, feature(tasks, moments), shape, device).float()
+                    for name, feature in self.more.items()
+                ),
+            ),
+            -1,
+        )
+        offset = moments.xy - own_xy[..., None, :]
+        peer = torch.cat((moments.xy, offset, moments.capacity[..., None]), -1)
+        peers = torch.relu(self.peer(peer)) * moments.peers[..., None]
+        count = moments.peers.sum(-1, keepdim=True).clamp(min=1)
+        pooled = torch.cat((torch.relu(self.own(own)), peers.sum(-2) / count, peers.amax(-2)), -1)
+        query: Tensor = self.query(pooled)
+        return query

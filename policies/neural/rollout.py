@@ -1,0 +1,274 @@
+"""Running a network through missions in the batched simulator, greedily or by sampling."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields
+from typing import Any, Protocol, TypeVar
+
+import torch
+from torch import Tensor
+
+from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.plan import Plan
+from mrta_zoo.policies.neural.capam.candidates import Candidates
+from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks, Watch
+from mrta_zoo.rules import MaskRule
+
+SEGMENT = 12
+"""Decisions between two looks at which missions are over; those are dropped, so that no work is done for them."""
+
+T = TypeVar("T", Moments, Candidates)
+
+NOT_FINITE = (
+    "the network gives probabilities that are not finite: its weights are spoilt (did training diverge?), a feature or "
+    "encoder of your own gives such numbers, or the scenario is beyond what float32 can hold"
+)
+
+
+class OutOfTimeError(Exception):
+    """The time was up before the missions were over."""
+
+
+class Scorer(Protocol):
+    """What decides: a `sharing.Network`, or anything else that scores tasks like one."""
+
+    def encode(self, tasks: Tasks) -> Any:
+        """What it knows of S missions' tasks; `select` gives that of some of them."""
+
+    def features(self, encoding: Any, moments: Moments) -> Any:
+        """What scoring needs to know of these moments besides, or None."""
+
+    def __call__(self, encoding: Any, moments: Moments, features: Any = None) -> Any:
+        """(S, G, N) log-probabilities of choosing each task, as `AllocationNetwork.forward` gives them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Taken:
+    """One decision of each of S · G missions.
+
+    Attributes:
+        moments: when it was taken, (S, G, …).
+        features: what the network made of them, or None.
+        actions: (S, G) int64 the tasks chosen.
+        live: (S, G) bool, false where there was nothing to decide.
+    """
+
+    moments: Moments
+    features: Candidates | None
+    actions: Tensor
+    live: Tensor
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """Consecutive decisions of the missions that were under way: Q = G · (number of decisions).
+
+    Attributes:
+        scenarios: (S',) int64 which scenarios they belong to.
+        moments: when they were taken, (S', Q, …).
+        features: what the network made of those moments, or None.
+        actions: (S', Q) int64 the tasks chosen.
+        live: (S', Q) bool, false where the mission was already over.
+        sample: (Q,) int64 which of the G samples each belongs to.
+    """
+
+    scenarios: Tensor
+    moments: Moments
+    features: Candidates | None
+    actions: Tensor
+    live: Tensor
+    sample: Tensor
+
+    @classmethod
+    def of(cls, taken: Sequence[Taken], scenarios: Tensor) -> Segment:
+        """Decisions of the same missions, one after another."""
+        samples = taken[0].actions.shape[1]
+        features = [each.features for each in taken if each.features is not None]
+        return cls(
+            scenarios=scenarios,
+            moments=Moments(*(torch.cat([getattr(t.moments, f.name) for t in taken], 1) for f in fields(Moments))),
+            features=Candidates.cat(features) if features else None,
+            actions=torch.cat([each.actions for each in taken], 1),
+            live=torch.cat([each.live for each in taken], 1),
+            sample=torch.arange(samples, device=scenarios.device).repeat(len(taken)),
+        )
+
+    def lively(self) -> Segment:
+        """The same without the scenarios whose missions were all over."""
+        rows = self.live.any(1).nonzero().squeeze(1)
+        if len(rows) == len(self.live):
+            return self
+        return Segment(
+            scenarios=self.scenarios[rows],
+            moments=_rows_of(self.moments, rows),
+            features=None if self.features is None else _rows_of(self.features, rows),
+            actions=self.actions[rows],
+            live=self.live[rows],
+            sample=self.sample,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Rollout:
+    """What came of B = S · G missions; row k·G + g is sample g of scenario k.
+
+    Attributes:
+        cost: (B,) float64, the objective, Eq. 1 of the paper.
+        completed: (B,) int64 completed tasks.
+        log_prob: (B,) float32, log-probability of all decisions together.
+        plans: B plans, if asked for.
+        segments: the decisions, if asked for.
+    """
+
+    cost: Tensor
+    completed: Tensor
+    log_prob: Tensor
+    plans: list[Plan] = field(default_factory=list)
+    segments: list[Segment] = field(default_factory=list)
+
+
+def roll_out(
+    network: Scorer,
+    scenarios: ScenarioBatch,
+    *,
+    samples: int = 1,
+    generator: torch.Generator | None = None,
+    mask_rule: MaskRule = "feasible",
+    keep_plans: bool = False,
+    keep_segments: bool = False,
+    until: float | None = None,
+) -> Rollout:
+    """Let `network` decide for all robots of all missions.
+
+    Args:
+        network: decides for each robot; its encoder runs once a scenario.
+        scenarios: S scenarios.
+        samples: G, how many missions to run of each.
+        generator: draws the decisions from the network's probabilities; None takes the likeliest (greedy).
+        mask_rule: what robots may choose.
+        keep_plans: whether to return the plans.
+        keep_segments: whether to return every decision, for learning.
+        until: by `time.perf_counter`, when to give up; None never does.
+
+    Raises:
+        ConfigError: if the network gives probabilities that are not finite.
+        OutOfTimeError: if there is not time enough.
+    """
+    # Inference mode is quicker, but what it makes can't take part in learning.
+    with torch.no_grad() if keep_segments else torch.inference_mode():
+        return _roll_out(network, scenarios, samples, generator, mask_rule, keep_plans, keep_segments, until)
+
+
+def _roll_out(
+    network: Scorer,
+    scenarios: ScenarioBatch,
+    samples: int,
+    generator: torch.Generator | None,
+    mask_rule: MaskRule,
+    keep_plans: bool,
+    keep_segments: bool,
+    until: float | None,
+) -> Rollout:
+    encoding = network.encode(Tasks.of_batch(scenarios))
+    mission = BatchMission(scenarios.repeat(samples), mask_rule)
+    total, device = len(scenarios) * samples, scenarios.device
+    out = Rollout(
+        cost=torch.zeros(total, dtype=torch.float64, device=device),
+        completed=torch.zeros(total, dtype=torch.int64, device=device),
+        log_prob=torch.zeros(total, device=device),
+    )
+    plans: list[Plan | None] = [None] * total
+    under_way = torch.arange(len(scenarios), device=device)
+    while True:
+        live_scenarios = (~mission.done).unflatten(0, (-1, samples)).any(1)
+        if not live_scenarios.all():
+            rows = _rows(under_way, samples)
+            out.cost[rows] = mission.cost()
+            out.completed[rows] = mission.completed()
+            if keep_plans:
+                for row, plan in zip(rows.tolist(), mission.plans(), strict=True):
+                    plans[row] = plan
+            if not live_scenarios.any():
+                break
+            keep = live_scenarios.nonzero().squeeze(1)
+            under_way = under_way[keep]
+            mission = mission.select(_rows(keep, samples))
+            encoding = encoding.select(keep)
+        log_prob = run_segment(
+            network, encoding, mission, samples, generator, under_way, out.segments if keep_segments else None,
+            math.inf if until is None else until,
+        )  # fmt: skip
+        # NaN would not only spoil the outcome: a mission that never takes a legal task would never end.
+        if not torch.isfinite(log_prob).all():
+            raise ConfigError(NOT_FINITE)
+        out.log_prob[_rows(under_way, samples)] += log_prob
+    out.plans.extend(plan for plan in plans if plan is not None)
+    return out
+
+
+def run_segment(
+    network: Scorer,
+    encoding: Any,
+    mission: BatchMission,
+    samples: int,
+    generator: torch.Generator | None,
+    under_way: Tensor,
+    segments: list[Segment] | None,
+    until: float = math.inf,
+) -> Tensor:
+    """Let the network take the next `SEGMENT` decisions of each mission.
+
+    Args:
+        network: decides.
+        encoding: of the scenarios, by `network`.
+        mission: B = S · G missions, which move on.
+        samples: G.
+        generator: of the draws; None takes the likeliest.
+        under_way: (S,) int64 what `Segment.scenarios` is to be.
+        segments: where the decisions go, or None.
+        until: time by the clock of `time.perf_counter` after which no decision begins.
+
+    Raises:
+        OutOfTimeError: if the time is up.
+
+    Returns:
+        (B,) log-probability of the decisions together.
+    """
+    taken: list[Taken] = []
+    log_prob = torch.zeros(len(mission.actor), device=mission.actor.device)
+    watch = Watch(mission, samples)
+    for _ in range(SEGMENT):
+        if until < math.inf and time.perf_counter() >= until:
+            raise OutOfTimeError
+        moments = watch.moments()
+        features = network.features(encoding, moments)
+        log_probs = network(encoding, moments, features).flatten(0, 1)
+        if generator is None:
+            action = log_probs.argmax(-1)
+        else:
+            # Gumbel's trick: unlike torch.multinomial it never makes the CPU wait for the GPU.
+            noise = torch.empty_like(log_probs).exponential_(generator=generator)
+            action = (log_probs - noise.log()).argmax(-1)
+        live = ~mission.done
+        log_prob += torch.where(live, log_probs.gather(1, action[:, None]).squeeze(1), 0.0)
+        if segments is not None:
+            shape = (-1, samples)
+            taken.append(Taken(moments, features, action.unflatten(0, shape), live.unflatten(0, shape)))
+        mission.step(action)
+    if segments is not None:
+        segments.append(Segment.of(taken, under_way))
+    return log_prob
+
+
+def _rows_of(tables: T, rows: Tensor) -> T:
+    """Some of the scenarios in a dataclass of tensors."""
+    return type(tables)(*(getattr(tables, each.name)[rows] for each in fields(tables)))
+
+
+def _rows(scenarios: Tensor, samples: int) -> Tensor:
+    """The rows that the samples of some scenarios occupy."""
+    return (scenarios[:, None] * samples + torch.arange(samples, device=scenarios.device)).flatten()

@@ -1,0 +1,1 @@
+"""Learning from plans, before REINFORCE: expert plans, the decisions behind them, gradient steps."""

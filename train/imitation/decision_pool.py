@@ -1,0 +1,77 @@
+"""Decisions of many plans in one place, to draw gradient steps from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import fields
+from operator import attrgetter
+
+import torch
+from torch import Tensor
+
+from mrta_zoo.batch import ScenarioBatch
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.policies.neural.capam.candidates import Candidates
+from mrta_zoo.policies.neural.capam.inputs import Moments
+from mrta_zoo.policies.neural.rollout import Segment
+
+
+class DecisionPool:
+    """The decisions behind plans, one after another, to draw from more than once: following plans takes longer.
+
+    Args:
+        scenarios: S scenarios.
+        segments: the decisions of `follow` on them.
+
+    Raises:
+        ConfigError: if there are no decisions.
+    """
+
+    def __init__(self, scenarios: ScenarioBatch, segments: Sequence[Segment]) -> None:
+        taken = [segment.live.nonzero(as_tuple=True) for segment in segments]
+        if not sum(len(row) for row, _ in taken):
+            raise ConfigError("none of the plans to imitate has a task; were they made for other scenarios?")
+        owner = torch.cat([segment.scenarios[row] for segment, (row, _) in zip(segments, taken, strict=True)])
+        order = owner.argsort(stable=True)
+
+        def flat(of: Callable[[Segment], Tensor]) -> Tensor:
+            tables = [of(segment)[at] for segment, at in zip(segments, taken, strict=True)]
+            return torch.cat(tables)[order]
+
+        self.scenarios = scenarios
+        self.actions = flat(attrgetter("actions"))
+        self.moments = Moments(*(flat(attrgetter(f"moments.{each.name}")) for each in fields(Moments)))
+        self.features: Candidates | None = None
+        if segments[0].features is not None:
+            self.features = Candidates(*(flat(attrgetter(f"features.{each.name}")) for each in fields(Candidates)))
+        self.count = owner.bincount(minlength=len(scenarios))
+        """(S,) how many decisions each plan has."""
+        self._first = self.count.cumsum(0) - self.count
+
+    def draw(self, plans: int, decisions: int, generator: torch.Generator) -> tuple[ScenarioBatch, Segment]:
+        """Some of the decisions of some of the plans, each drawn independently.
+
+        Args:
+            plans: how many plans, S'.
+            decisions: how many of each, Q.
+            generator: of the draws, on the CPU.
+
+        Returns:
+            the plans' scenarios, and the decisions, (S', Q).
+        """
+        device = self.actions.device
+        rows = torch.randint(len(self.count), (plans,), generator=generator).to(device)
+        count = self.count[rows, None]
+        share = torch.rand(plans, decisions, generator=generator, dtype=torch.float64).to(device)
+        # Of a plan without any some other's stands there, which is not live; the last one's would be beyond the end.
+        at = (self._first[rows, None] + (share * count).long()).clamp(max=len(self.actions) - 1)
+        drawn = Segment(
+            scenarios=torch.arange(plans, device=device),
+            moments=Moments(*(getattr(self.moments, each.name)[at] for each in fields(Moments))),
+            features=self.features
+            and Candidates(*(getattr(self.features, each.name)[at] for each in fields(Candidates))),
+            actions=self.actions[at],
+            live=(count > 0).expand(-1, decisions),
+            sample=torch.zeros(decisions, dtype=torch.int64, device=device),
+        )
+        return self.scenarios.select(rows), drawn
