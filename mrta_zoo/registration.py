@@ -8,14 +8,11 @@ GYMNASIUM = "mrta_zoo.env.gym_view:ActingRobotEnv"
 
 
 def register() -> None:
-    """Register what is not registered yet: doing it twice would warn. Entry points are imported when made.
-
-    Without these libraries, as on a machine that only trains, there is nothing to do.
-    """
+    """Register what is not registered yet: doing it twice would warn. Entry points are imported when made."""
     try:
         import gymnasium
         import pettingzoo
-    except (ImportError, OSError):  # OSError: PettingZoo asks for the current folder, which may have been deleted
+    except OSError:  # PettingZoo asks for the current folder, which may have been deleted
         return
     if NAME not in gymnasium.registry:
         gymnasium.register(NAME, entry_point=GYMNASIUM)

@@ -13,6 +13,7 @@ from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import Network
+from mrta_zoo.policies.neural.weights import load_state
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.objective import Objective
@@ -139,8 +140,6 @@ class RolloutBaseline:
         return dict(self.network.state_dict())
 
     def restore(self, state: dict[str, Tensor], path: Path) -> None:
-        from mrta_zoo.policies.neural.weights import load_state  # needs more than torch and NumPy
-
         load_state(self.network, state, path)
 
     def _greedy(self, scenarios: ScenarioBatch) -> Tensor:

@@ -19,7 +19,6 @@ import os
 import shutil
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import torch
 
@@ -180,9 +179,9 @@ def policy_info(run: Reinforce, seconds: float) -> PolicyInfo:
     """
     if not run.history:
         raise ConfigError("the run has not validated yet; call run.validate() first")
-    last = run.history[-1]
+    config, last = run.config, run.history[-1]
     trained = {
-        "config": asdict(run.config),
+        "config": asdict(config),
         "updates": run.update,
         "episodes": last.episodes,
         "seconds": round(seconds),
@@ -192,16 +191,6 @@ def policy_info(run: Reinforce, seconds: float) -> PolicyInfo:
         "validation_completion": last.completion,
         "validation_cost": last.cost,
     }
-    return info_of(run.config, trained)
-
-
-def info_of(config: TrainConfig, trained: dict[str, Any]) -> PolicyInfo:
-    """What belongs to the weights of a run.
-
-    Args:
-        config: the run's.
-        trained: how it went, for people to read.
-    """
     return PolicyInfo(
         network=config.network,
         sharing=config.sharing,

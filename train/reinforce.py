@@ -20,9 +20,11 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import ScenarioGenerator, draw_scenario
 from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.neural.capam.candidate_decoder import CandidateDecoder
+from mrta_zoo.policies.neural.policy import load_policy
 from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import Network, build_network
 from mrta_zoo.policies.neural.temperature import tempered
+from mrta_zoo.policies.neural.weights import load_state
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.train.baselines import Baseline, build_baseline
 from mrta_zoo.train.config import TrainConfig
@@ -248,9 +250,6 @@ class Reinforce:
                 yield self.validate()
 
     def _start_from(self, initial: str) -> None:
-        from mrta_zoo.policies.neural.policy import load_policy
-        from mrta_zoo.policies.neural.weights import load_state
-
         policy, config = load_policy(initial), self.config
         info = policy.info
         differences = info.network.differences(config.network)

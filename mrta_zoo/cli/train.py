@@ -16,7 +16,6 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.train import checkpoint
-from mrta_zoo.train.collect import BARE, collect
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.imitation.plans import make_plans
 from mrta_zoo.train.presets import PRESETS
@@ -51,10 +50,8 @@ class TrainCommand:
     resume: bool = False
     """Go on with the run in --out; its configuration is kept, so that no other flag is needed."""
     prepare: bool = False
-    """Only write the configuration and, if there is imitation, make the plans: to train elsewhere, with torch and NumPy
-    alone; see mrta_zoo.train.bare."""
-    collect: bool = False
-    """Only take over what `mrta_zoo.train.bare` left in --out, as the run's policy."""
+    """Only write the configuration and make the plans to imitate, if any. Go on with --resume, perhaps on another
+    machine: plans take CPU cores, training a GPU."""
     workers: int = 1
     """Processes that make the plans to imitate and, on a GPU, draw scenarios ahead of time."""
     compiled: bool = False
@@ -75,11 +72,6 @@ def train_command(argv: Sequence[str]) -> None:
     check_threads(command.threads, least=0)
     if not 1 <= command.workers <= MAX_THREADS:
         raise ConfigError(f"workers is {command.workers}; expected a whole number from 1 to {MAX_THREADS}")
-    if command.collect:
-        if command.resume or command.prepare:
-            raise ConfigError("--collect only takes over what is there; expected it without --resume and --prepare")
-        collect(command.out)
-        return
     with cpu_threads(command.threads or torch.get_num_threads()):
         _run(command)
 
@@ -87,11 +79,6 @@ def train_command(argv: Sequence[str]) -> None:
 def _run(command: TrainCommand) -> None:
     options = RunOptions(workers=command.workers, compiled=command.compiled)
     if command.resume:
-        if (command.out / f"{BARE}.npz").exists():
-            raise ConfigError(
-                f"{command.out} holds a run of mrta_zoo.train.bare, which goes on there (--resume); to train on from "
-                f"its policy, begin a new run: --initial {command.out}, another --out, and no --resume"
-            )
         _check_kept(command)
     else:
         run, seconds = checkpoint.start(command.out, command.config, options), 0.0

@@ -51,7 +51,6 @@ def test_weights_that_are_not_there(tmp_path: Path, content: bytes, said: str, c
     from mrta_zoo.policies.neural.capam.config import NetworkConfig
     from mrta_zoo.policies.neural.policy import load_policy
     from mrta_zoo.policies.pretrained import pretrained_path
-    from mrta_zoo.train.collect import collect
     from mrta_zoo.train.config import TrainConfig
     from mrta_zoo.train.imitation.experts import read_plans, shard_path
 
@@ -70,11 +69,8 @@ def test_weights_that_are_not_there(tmp_path: Path, content: bytes, said: str, c
         load_policy(path)
 
     shard_path(tmp_path, 0).write_bytes(content)
-    (tmp_path / "bare.npz").write_bytes(content)
     with pytest.raises(ConfigError, match=f"not a readable file of plans: it {said}"):
         read_plans(TrainConfig(network=NetworkConfig()), tmp_path, 1)
-    with pytest.raises(ConfigError, match=f"not what mrta_zoo.train.bare leaves: it {said}"):
-        collect(tmp_path)
 
 
 URLS = ("https://example.org/m.csv", "file:///data/m.csv", "hf://who/what", "S3://bucket/cases")

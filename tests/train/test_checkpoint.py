@@ -86,6 +86,25 @@ def test_killed_run_resumes_to_the_same_bits(tmp_path: Path) -> None:
         assert (killed / file).read_bytes() == (tmp_path / "straight" / file).read_bytes()
 
 
+def test_prepared_here_and_trained_elsewhere_ends_in_the_same_bits(tmp_path: Path) -> None:
+    arguments = shlex.split(
+        "--preset smoke --tasks 6 --updates 2 --epoch 1 --scenarios 2 --validation-scenarios 4 --embedding 8 --heads 2"
+    )
+    train_command([*arguments, "--out", str(tmp_path / "here"), "--prepare"])
+    assert not (tmp_path / "here" / "policy.safetensors").exists()
+    (tmp_path / "here").rename(tmp_path / "elsewhere")
+    train_command(["--out", str(tmp_path / "elsewhere"), "--resume"])
+    train_command([*arguments, "--out", str(tmp_path / "straight")])
+    for file in ("policy.safetensors", "history.csv"):
+        assert (tmp_path / "elsewhere" / file).read_bytes() == (tmp_path / "straight" / file).read_bytes()
+
+
+@pytest.mark.parametrize("workers", ["0", "5000"])
+def test_number_of_workers_is_checked(tmp_path: Path, workers: str) -> None:
+    with pytest.raises(ConfigError, match="expected a whole number from 1 to"):
+        train_command(["--preset", "smoke", "--out", str(tmp_path), "--workers", workers])
+
+
 def test_one_process_at_a_time(tmp_path: Path) -> None:
     checkpoint.start(tmp_path, TINY)
     with FileLock(tmp_path / ".lock"), pytest.raises(ConfigError, match="is in use by another run; expected to wait"):

@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.train.imitation import plans
+from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.imitation import experts, plans
 from mrta_zoo.train.presets import PRESETS
 
 SLOW = '''
@@ -94,3 +95,15 @@ def test_an_interrupt_ends_it_at_once(tmp_path: Path) -> None:
     finally:
         with contextlib.suppress(ProcessLookupError):  # all of them have ended
             os.killpg(process.pid, signal.SIGKILL)
+
+
+def test_plans_that_are_there_are_not_made_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(experts, "SHARD", 4)
+    config = TrainConfig(
+        tasks=(5,), reference_tasks=5, max_robots=2, imitation_updates=1, imitation_plans=4, imitation_batch=2
+    )
+    made = experts.make_shard(config, 0, tmp_path)
+    monkeypatch.setattr(plans, "pool_of", None)  # whoever wants to make plans fails
+    got = plans.make_plans(config, tmp_path)
+    assert made == tmp_path / "0000000.npz"
+    assert [plan.scenario for plan in got] == [experts.expert_scenario(config, number) for number in range(4)]
