@@ -1,5 +1,10 @@
 """Multi-robot task allocation as a PettingZoo environment, with one CapAM policy shared by all robots."""
 
+# ruff: noqa: E402
+from mrta_zoo.program import end_in_a_sentence
+
+end_in_a_sentence()  # before all that takes long to import
+
 from pathlib import Path
 
 from mrta_zoo.plan import Plan

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
 from importlib import import_module
 from importlib.util import find_spec
 
@@ -17,6 +20,8 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "report": ("filelock", "scipy", "statsmodels", "pandas", "jinja2", "matplotlib"),
 }
 """Each extra with the modules it brings, in so far as we import them."""
+BACKEND = "MPLBACKEND"
+"""Of the environment: what matplotlib opens windows with."""
 
 
 def require(extra: str, what: str, also: Sequence[str] = ()) -> None:
@@ -38,10 +43,41 @@ def require(extra: str, what: str, also: Sequence[str] = ()) -> None:
         )
     for module in modules:
         try:
-            import_module(module)
+            _import(module)
         except Exception as error:  # whatever a broken installation raises: ImportError, OSError, ValueError, ...
             why = next(iter(str(error).strip().splitlines()), type(error).__name__).rstrip(".")
             raise MissingExtraError(
                 f"{what} needs {module}, which is installed here but cannot be imported ({why}); install what fits "
                 f'with: pip install --upgrade "mrta_zoo[{extra}]"'
             ) from None
+
+
+@contextmanager
+def importing(extra: str, what: str) -> Iterator[None]:
+    """Within it what an extra brings is imported: matplotlib also where `MPLBACKEND` names no backend that it knows.
+
+    Args:
+        extra: one of `EXTRAS`.
+        what: what needs it; begins the message.
+
+    Raises:
+        MissingExtraError: if it is not installed, or cannot be imported.
+    """
+    require(extra, what)
+    yield
+
+
+def _import(module: str) -> None:
+    if module != "matplotlib" or module in sys.modules:
+        import_module(module)
+        return
+    # It fails where the environment names a backend that it does not know. We open no windows, and need none.
+    backend = os.environ.pop(BACKEND, None)
+    try:
+        matplotlib = import_module(module)
+    finally:
+        if backend is not None:
+            os.environ[BACKEND] = backend
+    if backend:
+        with suppress(ValueError):
+            matplotlib.rcParams["backend"] = backend

@@ -11,6 +11,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from threading import Lock, get_ident
 
 from mrta_zoo.bounds import check_threads
 
@@ -18,6 +19,12 @@ VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS")
 """Of the environment, by which users say how many threads torch shall have."""
 
 _chosen: ContextVar[int | None] = ContextVar("chosen", default=None)
+
+_lock = Lock()
+_blocks: list[tuple[int, int]] = []
+"""The Python threads that are in a block now, each with its number of threads."""
+_usual = 1
+"""What torch used before the first of them."""
 
 
 @contextmanager
@@ -50,13 +57,28 @@ def few_threads() -> Iterator[None]:
 
 @contextmanager
 def _torch_threads(count: int) -> Iterator[None]:
+    """Within it torch uses so many threads for the Python thread that is in it.
+
+    What torch is told also counts for Python threads that first use torch later. So one that begins within another's
+    block finds the number of that block, and is given what was there before instead.
+    """
+    global _usual
     torch = sys.modules.get("torch")  # heuristics need none, so it is not imported for them
     if torch is None:
         yield
         return
-    before = torch.get_num_threads()
-    torch.set_num_threads(count)
+    block = get_ident(), count
+    with _lock:
+        before = torch.get_num_threads()
+        if not _blocks:
+            _usual = before
+        elif all(thread != block[0] for thread, _ in _blocks) and any(before == other for _, other in _blocks):
+            before = _usual
+        _blocks.append(block)
+        torch.set_num_threads(count)
     try:
         yield
     finally:
-        torch.set_num_threads(before)
+        with _lock:
+            _blocks.remove(block)
+            torch.set_num_threads(before)

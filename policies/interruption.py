@@ -1,4 +1,4 @@
-"""Long work that Ctrl-C ends at once, though Python's own waiting or compiled code would hold it up."""
+"""Long work that Ctrl-C ends at once, though Python's own waiting or compiled code would hold it up or crash."""
 
 from __future__ import annotations
 
@@ -35,10 +35,16 @@ def side_by_side(jobs: Sequence[Callable[[], Result]], stop: Callable[[], None])
         return [run(jobs[0]), *(other.result() for other in others)]
 
 
-def interruptible(job: Callable[[], Result]) -> Result:
-    """What a job gives that cannot be stopped, such as a solver's compiled code.
+def interruptible(job: Callable[[], Result], stop: Callable[[], None] | None = None) -> Result:
+    """What a job gives that Ctrl-C must not reach, such as compiled code.
 
-    It runs in a thread of its own. After Ctrl-C it goes on there until it ends or the process does, but nobody waits.
+    It runs in a thread of its own: Python raises what a signal's handler raises in the main thread alone, and there
+    perhaps amid what Numba does to hand over arguments, which then crashes.
+
+    Args:
+        job: the work.
+        stop: makes it end soon; called after Ctrl-C, and the end is then waited for. Without it the job goes on there
+            until it ends or the process does, but nobody waits.
     """
     found: Future[Result] = Future()
 
@@ -49,7 +55,14 @@ def interruptible(job: Callable[[], Result]) -> Result:
             found.set_exception(error)
 
     thread = threading.Thread(target=run, daemon=True)
-    thread.start()
-    while thread.is_alive():
-        thread.join(POLL)
+    try:
+        thread.start()
+        while thread.is_alive():
+            thread.join(POLL)
+    except BaseException:
+        if stop is not None:
+            stop()
+            if thread.is_alive():  # else it was interrupted as it began
+                thread.join()
+        raise
     return found.result()

@@ -17,7 +17,14 @@ ROOT = Path(__file__).resolve().parent.parent
 LAYERS = (
     (
         "what needs nothing of ours",
-        ("mrta_zoo.errors", "mrta_zoo.wording", "mrta_zoo.bounds", "mrta_zoo.extras", "mrta_zoo.registration"),
+        (
+            "mrta_zoo.errors",
+            "mrta_zoo.wording",
+            "mrta_zoo.bounds",
+            "mrta_zoo.extras",
+            "mrta_zoo.registration",
+            "mrta_zoo.program",
+        ),
     ),
     ("the problem and its rules", ("mrta_zoo.scenario", "mrta_zoo.plan", "mrta_zoo.rules", "mrta_zoo.scales")),
     ("dynamics and scores", ("mrta_zoo.mission", "mrta_zoo.batch", "mrta_zoo.verify", "mrta_zoo.left_out")),

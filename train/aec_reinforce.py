@@ -4,7 +4,7 @@ One CapAM network serves all robots. Each scenario is played several times; a mi
 others of its scenario makes its decisions likelier (leave-one-out baseline). `train.reinforce` does the same on the
 batched simulator: 17 times faster with updates of this size, 113 times with 64 scenarios x 8 samples.
 
-Run it with ``python -m mrta_zoo.train.aec_reinforce``: 12 tasks, 2 robots, a quarter of a minute.
+Run it with ``python -m mrta_zoo.train.aec_reinforce``, ``--help`` for more: 12 tasks, 2 robots, a quarter of a minute.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import torch
+import tyro
 from torch import Tensor
 
 from mrta_zoo import mrta_v0
@@ -91,16 +92,21 @@ def small_problem() -> Any:
     return mrta_v0.env(generator=generator, max_tasks=12, max_robots=2, reward="completion")
 
 
-def main() -> None:
-    """Train on the small problem and print what came of it."""
+def main(updates: int = 100, seed: int = 0) -> None:
+    """Train on the small problem and print what came of it.
+
+    Args:
+        updates: gradient steps.
+        seed: of weights, scenarios and choices.
+    """
     env = small_problem()
-    network = build_network(NetworkConfig(embedding=32, heads=4), "shared", robots=2, seed=0)
+    network = build_network(NetworkConfig(embedding=32, heads=4), "shared", robots=2, seed=seed)
     print(f"greedy completion before training: {evaluate(env, network):.3f}")
-    for update, completion in enumerate(train(env, network), start=1):
+    for update, completion in enumerate(train(env, network, updates=updates, seed=seed), start=1):
         if update % 10 == 0:
             print(f"update {update}: sampled completion {completion:.3f}")
     print(f"greedy completion after training: {evaluate(env, network):.3f}")
 
 
 if __name__ == "__main__":
-    main()
+    tyro.cli(main)

@@ -7,13 +7,16 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
-from matplotlib.patheffects import withStroke
 
 from mrta_zoo.eval.report.figure_style import FAINT, INK, new_figure, plain, style_of
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.significance import estimate_mean
+from mrta_zoo.extras import importing
 from mrta_zoo.wording import counted
+
+with importing("report", "a figure"):
+    from matplotlib.figure import Figure
+    from matplotlib.patheffects import withStroke
 
 NEAR = 2.0
 """Lines that end within this factor of each other have their names in one column."""

@@ -7,14 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
-import matplotlib
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
-
+from mrta_zoo.extras import importing
 from mrta_zoo.io.atomic import replacing
 from mrta_zoo.show.figure import LiteralFigure
+
+with importing("report", "a figure"):
+    import matplotlib
+    from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 INK, FAINT, GRID = "#22303c", "#5d6874", "#e3e7eb"
 
@@ -64,9 +67,13 @@ def plain(axes: Any, grid: str = "x") -> None:
         spine.set_visible(False)
 
 
+_setting = Lock()
+"""One thread at a time: matplotlib's settings are the whole process's."""
+
+
 def save_figure(figure: Figure, stem: Path) -> None:
     """Write ``stem.png`` and ``stem.svg``; equal figures give equal files."""
     with replacing(stem.with_suffix(".png")) as partial:
         figure.savefig(partial, format="png", dpi=140, metadata={"Software": None})
-    with replacing(stem.with_suffix(".svg")) as partial, matplotlib.rc_context({"svg.hashsalt": "mrta_zoo"}):
+    with replacing(stem.with_suffix(".svg")) as partial, _setting, matplotlib.rc_context({"svg.hashsalt": "mrta_zoo"}):
         figure.savefig(partial, format="svg", metadata={"Date": None, "Creator": None})

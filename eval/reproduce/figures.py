@@ -8,13 +8,16 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 
 from mrta_zoo.eval.report import wording
 from mrta_zoo.eval.report.figure_style import FAINT, INK, new_figure, plain, style_of
 from mrta_zoo.eval.reproduce.study import Group, Study
 from mrta_zoo.eval.significance import LEAST, Estimate
+from mrta_zoo.extras import importing
 from mrta_zoo.wording import counted
+
+with importing("report", "a figure"):
+    from matplotlib.figure import Figure
 
 PANELS_A_LINE = 4
 ROW = 0.34

@@ -8,11 +8,11 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager, suppress
-from io import TextIOWrapper
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 
 from mrta_zoo import __version__
+from mrta_zoo.cli.streams import fit_streams
 from mrta_zoo.errors import ConfigError, MrtaError
 from mrta_zoo.extras import require
 from mrta_zoo.io.paths import check_no_url
@@ -129,28 +129,35 @@ def main(argv: Sequence[str] | None = None) -> int:
     Args:
         argv: the arguments; by default those of the process, which then ends, so that standard output may be given up.
     """
-    with _fit_streams():
+    with fit_streams():
         return _run(sys.argv[1:] if argv is None else argv, ends=argv is None)
 
 
 def _run(arguments: Sequence[str], ends: bool) -> int:
     try:
+        return _exit_code(arguments)
+    finally:
+        if ends:
+            _drop_stuck_output()
+
+
+def _exit_code(arguments: Sequence[str]) -> int:
+    try:
         try:
-            return _dispatch(list(arguments))
-        finally:
-            sys.stdout.flush()  # a full disk, or a reader that has gone away, shows here, not at exit
+            code = _dispatch(list(arguments))
+        except SystemExit:
+            sys.stdout.flush()
+            raise
+        sys.stdout.flush()  # a full disk, or a reader that has gone away, shows here, not at exit
+        return code
     except MrtaError as error:
         return _complain(str(error))
     except KeyboardInterrupt:
-        print("interrupted", file=sys.stderr)
+        _tell("interrupted")
         return INTERRUPTED
     except BrokenPipeError:  # the reader, such as `head`, has seen enough
-        if ends:
-            _silence_stdout()
         return BROKEN_PIPE
     except OSError as error:
-        if ends:
-            _drop_stuck_output()
         where = "the output" if error.filename is None else os.fsdecode(error.filename)
         return _complain(f"{where}: {(error.strerror or str(error)).lower()}")
     except MemoryError:
@@ -218,30 +225,15 @@ def _help() -> str:
     )
 
 
-@contextmanager
-def _fit_streams() -> Iterator[None]:
-    """Standard output and error are fit for any text meanwhile, also where the shell has closed them."""
-    with ExitStack() as restored:
-        for name in ("stdout", "stderr"):
-            if getattr(sys, name) is None:  # by >&-
-                setattr(sys, name, restored.enter_context(open(os.devnull, "w", encoding="utf-8")))
-                restored.callback(setattr, sys, name, None)
-            elif hasattr(stream := getattr(sys, name), "reconfigure"):
-                restored.callback(_reconfigure, stream, stream.errors)
-                _reconfigure(stream, "replace")  # what the terminal's encoding lacks must not end in a traceback
-        yield
-
-
-def _reconfigure(stream: TextIOWrapper, errors: str | None) -> None:
-    with suppress(OSError):  # it writes what is left to write, which may have failed before
-        stream.reconfigure(errors=errors)
-
-
 def _complain(sentence: str) -> int:
     """Print an error as one line in which nothing steers the terminal, and give the exit code."""
-    line = " ".join(sentence.split())
-    print("error:", spelt_out(line), file=sys.stderr)
+    _tell(f"error: {spelt_out(' '.join(sentence.split()))}")
     return USER_ERROR
+
+
+def _tell(line: str) -> None:
+    with suppress(OSError):  # if nobody reads it, the exit code must do
+        print(line, file=sys.stderr)
 
 
 def _drop_stuck_output() -> None:
@@ -249,8 +241,4 @@ def _drop_stuck_output() -> None:
     try:
         sys.stdout.flush()
     except OSError:
-        _silence_stdout()
-
-
-def _silence_stdout() -> None:
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -5,23 +5,20 @@ Needs matplotlib (``mrta_zoo[plot]``), which it uses without its global state.
 
 from __future__ import annotations
 
-import warnings
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.extras import require
+from mrta_zoo.extras import importing
 from mrta_zoo.io.atomic import replacing
 from mrta_zoo.io.paths import check_no_url, suffix_of
+from mrta_zoo.show.lettering import any_letters
 
-try:
+with importing("plot", "a picture"):
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
     from matplotlib.text import Text
-except Exception:  # it is not there, or broken
-    require("plot", "a picture")
-    raise
 
 NOT_OFFERED = ("pgf", "raw", "rgba")
 """Formats of matplotlib's in which every text is TeX, and which have no header: nothing opens them."""
@@ -34,8 +31,7 @@ class LiteralFigure(Figure):
         """Draw all of it; letters that the font lacks become boxes."""
         for text in self.findobj(Text):
             text.set(parse_math=False, usetex=False)
-        with warnings.catch_warnings():
-            warnings.filterwarnings("ignore", "Glyph .* missing from")
+        with any_letters():
             super().draw(renderer)
 
 

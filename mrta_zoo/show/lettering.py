@@ -7,20 +7,19 @@ from __future__ import annotations
 
 import warnings
 from bisect import bisect_left
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import lru_cache
+from threading import RLock
 
 import numpy as np
 
-from mrta_zoo.extras import require
+from mrta_zoo.extras import importing
 from mrta_zoo.scenario import FloatArray
 
-try:
+with importing("plot", "a picture"):
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import text_to_path
-except Exception:  # it is not there, or broken
-    require("plot", "a picture")
-    raise
 
 SHORTEST = 5
 """Letters that a shortened text must keep, the mark of what is missing included, to be worth showing."""
@@ -28,11 +27,24 @@ AROUND = ((1, 1), (1, -1), (-1, 1), (-1, -1), (1, 0), (-1, 0), (0, 1), (0, -1))
 """Where a label may lie as seen from its place, the first choice first."""
 
 
+_warnings = RLock()
+
+
+@contextmanager
+def any_letters() -> Iterator[None]:
+    """Within it matplotlib does not warn of letters that its font lacks.
+
+    One thread at a time is in it, as filters of warnings are the whole process's.
+    """
+    with _warnings, warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph .* missing from")
+        yield
+
+
 @lru_cache(maxsize=4096)
 def text_width(text: str, size: float, weight: str = "normal") -> float:
     """How wide a line of text is in matplotlib's own font."""
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Glyph .* missing from")
+    with any_letters():
         width, _, _ = text_to_path.get_text_width_height_descent(text, FontProperties(size=size, weight=weight), False)
     return float(width)
 

@@ -9,6 +9,7 @@ import torch
 from torch import Tensor, nn
 
 from mrta_zoo.env.observation import EGO_FEATURES, MISSION_FEATURES, ROBOT_FEATURES, TASK_FEATURES
+from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
 from mrta_zoo.policies.neural.sharing import Network
 
@@ -19,6 +20,9 @@ class ActorCritic(nn.Module):
     Observations are the environment's Dict form as tensors, ``{"observation": {"tasks", "robots", "ego", "mission"},
     "action_mask"}``, every one with the same leading dimensions (…), such as none, a batch, or time × robots. In the
     parallel form the mask, and so the logits, have a column more, the no-op.
+
+    On a CPU it uses one thread, as trained policies do. Gradients are computed by the loop that asks for them: put
+    ``with few_threads():`` (`policies.cpu_threads`) around it.
 
     Nothing of the value enters `network`, which is what `weights.save_policy` writes and `neural.load_policy` loads.
 
@@ -36,6 +40,7 @@ class ActorCritic(nn.Module):
         """Logits and values, as `logits` and `value`."""
         return self.logits(observation), self.value(observation)
 
+    @few_threads()
     def logits(self, observation: Mapping[str, Any]) -> Tensor:
         """(…, max_tasks) log-probabilities; the least finite number where the mask forbids, so that no NaN arises.
 
@@ -51,6 +56,7 @@ class ActorCritic(nn.Module):
             scores = torch.cat((scores.masked_fill(noop, -torch.inf), torch.where(noop, 0.0, -torch.inf)), -1)
         return scores.clamp(min=torch.finfo(scores.dtype).min)
 
+    @few_threads()
     def value(self, observation: Mapping[str, Any]) -> Tensor:
         """(…) what is expected of the rest of the mission."""
         value: Tensor = self.critic(observation["observation"])

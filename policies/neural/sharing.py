@@ -7,9 +7,11 @@ and 4 with workloads of 40.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
+from threading import RLock
 from typing import Literal, cast
 
 import torch
@@ -182,6 +184,20 @@ def check_kinds(kinds: Sequence[float]) -> None:
         )
 
 
+_drawing = RLock()
+
+
+@contextmanager
+def seeded(seed: int) -> Iterator[None]:
+    """Within it torch's global generator, which draws initial weights, begins at a seed; then it is as it was.
+
+    One Python thread at a time is in it: the others' draws would mix with its own.
+    """
+    with _drawing, torch.random.fork_rng(devices=[]):
+        torch.manual_seed(seed)
+        yield
+
+
 def build_network(
     config: NetworkConfig, sharing: Sharing, robots: int, seed: int, kinds: Sequence[float] = USUAL_KINDS
 ) -> Network:
@@ -197,8 +213,7 @@ def build_network(
     Raises:
         ConfigError: if there is no such sharing or no such kinds.
     """
-    with torch.random.fork_rng(devices=[]):
-        torch.manual_seed(seed)
+    with seeded(seed):
         if sharing == "shared":
             return AllocationNetwork(config)
         if sharing == "independent":

@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TextIO
 
 import pytest
 from command_line import Captured, fails
@@ -71,6 +72,55 @@ def test_a_plan_is_printed_and_written_elsewhere(
     assert "picture written to picture.png" in printed
     assert Path("picture.png").stat().st_size > 1000
     assert read_plan(rescued(told, "plan.json")).routes == ((1, 0),)
+
+
+@pytest.fixture
+def no_reader(mission: Path) -> Iterator[TextIO]:
+    """A pipe that nobody reads."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    yield open(writer, "w", encoding="utf-8", closefd=False)  # noqa: SIM115
+    os.close(writer)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="pipes without a reader give other errors there")
+@pytest.mark.parametrize(
+    "line",
+    [
+        "solve cases/m.csv --method nearest --out out/rows.csv",
+        "eval --cases cases --methods nearest --out out/rows.csv",
+        "compare cases/m.csv --methods nearest,edf",
+    ],
+)
+def test_the_reader_has_gone(line: str, no_reader: TextIO, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
+    """What can be written is written, and the exit code says what happened."""
+    monkeypatch.setattr("sys.stdout", no_reader)
+    assert main(line.split()) == 141
+    assert capsys.readouterr().err == ""
+    assert ("--out" not in line) or Path("out/rows.csv").exists()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="pipes without a reader give other errors there")
+@pytest.mark.parametrize(
+    ("line", "work"),
+    [
+        ("solve cases/m.csv --method nearest --out out/rows.csv", "solve_and_score"),
+        ("eval --cases cases --methods nearest --out out/rows.csv", "evaluate"),
+    ],
+)
+def test_the_reader_has_gone_and_something_cannot_be_written(
+    line: str, work: str, no_reader: TextIO, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+) -> None:
+    vanishing("mrta_zoo.cli.commands", work, monkeypatch)
+    monkeypatch.setattr("sys.stdout", no_reader)
+    assert main(line.split()) == 2
+    rescued(capsys.readouterr().err, "rows.csv")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="pipes without a reader give other errors there")
+def test_nobody_reads_the_error(no_reader: TextIO, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stderr", no_reader)
+    assert main(["solve", "none.csv"]) == 2
 
 
 def test_a_picture_that_fails_costs_nothing_else(

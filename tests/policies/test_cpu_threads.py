@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 import torch
 from factories import small_scenario
+from torch.utils.data import default_collate
 
 from mrta_zoo import mrta_v0
 from mrta_zoo.cli.train import train_command
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.cpu_threads import VARIABLES, cpu_threads, few_threads
-from mrta_zoo.policies.neural import decoding
+from mrta_zoo.policies.neural import actor_critic, decoding
 from mrta_zoo.policies.neural import policy as neural
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.capam.network import AllocationNetwork
@@ -22,6 +24,7 @@ from mrta_zoo.policies.neural.policy import NeuralPolicy
 from mrta_zoo.policies.neural.weights import PolicyInfo
 from mrta_zoo.train import aec_reinforce, reinforce
 from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.integrations.networks import GreedyPolicy, build
 from mrta_zoo.train.reinforce import Reinforce
 
 SMALL = NetworkConfig(embedding=8, heads=2)
@@ -65,6 +68,51 @@ def test_they_are_put_back_whatever_happens() -> None:
         raise KeyboardInterrupt
 
 
+@pytest.mark.parametrize("count", [1, 2])
+def test_they_are_put_back_after_several_threads(count: int) -> None:
+    """The first to begin ends while the second, which began meanwhile, goes on."""
+    begun, over = threading.Event(), threading.Event()
+    seen: list[int] = []
+
+    def second() -> None:
+        with cpu_threads(1):
+            seen.append(torch.get_num_threads())
+            begun.set()
+            assert over.wait(10)
+        seen.append(torch.get_num_threads())
+
+    with cpu_threads(count):
+        thread = threading.Thread(target=second)
+        thread.start()
+        assert begun.wait(10)
+        assert torch.get_num_threads() == count
+    assert torch.get_num_threads() == 3
+    over.set()
+    thread.join()
+    assert seen == [1, 3]
+    later = threading.Thread(target=lambda: seen.append(torch.get_num_threads()))
+    later.start()
+    later.join()
+    assert seen == [1, 3, 3]
+
+
+def test_nested_blocks_of_a_thread_among_others() -> None:
+    seen: list[int] = []
+
+    def other() -> None:
+        for count in (1, 2):
+            with cpu_threads(count):
+                with few_threads():
+                    seen.append(torch.get_num_threads())
+                seen.append(torch.get_num_threads())
+
+    with cpu_threads(2):
+        thread = threading.Thread(target=other)
+        thread.start()
+        thread.join()
+    assert seen == [1, 1, 2, 2]
+
+
 def test_the_user_may_choose(monkeypatch: pytest.MonkeyPatch) -> None:
     with cpu_threads(2):
         torch.set_num_threads(4)  # as its import may, inside
@@ -86,6 +134,26 @@ def test_a_policy(monkeypatch: pytest.MonkeyPatch) -> None:
     batch = watched(monkeypatch, neural, "roll_out")
     policy.solve_batch([scenario])
     assert (acting, planning, batch) == ([1], [1], [1])
+
+
+def test_a_network_that_other_libraries_train(monkeypatch: pytest.MonkeyPatch) -> None:
+    module = build("capam", 0, 0, seed=0)
+    counts = watched(monkeypatch, actor_critic.Moments, "of_tables")
+    values = watched(monkeypatch, module.critic, "forward")
+    env = mrta_v0.env(scenario=small_scenario())
+    env.reset(seed=1)
+    module(default_collate([env.last()[0]]))
+    assert (counts, values) == ([1], [1])
+
+
+def test_a_plain_network_of_the_integrations(monkeypatch: pytest.MonkeyPatch) -> None:
+    env = mrta_v0.env(scenario=small_scenario(), observation="masked")
+    env.reset(seed=1)
+    seen = env.last()[0]
+    network = build("mlp", len(seen["observation"]), len(seen["action_mask"]), seed=0)
+    counts = watched(monkeypatch, network, "logits")
+    GreedyPolicy(network).act(seen, "robot_0")
+    assert counts == [1]
 
 
 def test_training(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,7 +7,8 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Iterator
-from functools import partial
+from functools import partial, wraps
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,8 +19,10 @@ from mrta_zoo.policies.registry import make_solver
 
 pytest.importorskip("numba")
 
+from numba.core.dispatcher import Dispatcher
+
 from mrta_zoo.policies.classical.exact import relaxation, set_choice
-from mrta_zoo.policies.classical.local_search import eils, ils
+from mrta_zoo.policies.classical.local_search import eils, ils, insertion, tours
 
 CASE = TaptcGenerator(tasks=(40, 40), robots=(3, 3))(np.random.default_rng(3))
 BUDGET = 20.0
@@ -73,6 +76,33 @@ def test_a_solver_that_was_interrupted_plans_again() -> None:
     assert time.perf_counter() - begun >= 0.2  # it searched for all of its budget
 
 
+@pytest.mark.parametrize("method", ["eils", "ils", "exact", "nearest+polish"])
+@pytest.mark.parametrize("budget", [None, 0.05])
+def test_nothing_is_raised_within_compiled_code(
+    method: str, budget: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Signals' handlers run in the main thread, and what they raise while Numba unpacks arguments can crash it."""
+    solver = make_solver(method, budget=budget)
+    solver.solve(CASE)  # compiles what it calls
+    callers = []
+
+    def watched(function: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(function)
+        def call(*arguments: Any) -> Any:
+            callers.append(threading.current_thread())
+            return function(*arguments)
+
+        return call
+
+    for module in (eils, ils, insertion, tours):
+        for name, value in list(vars(module).items()):
+            if isinstance(value, Dispatcher):
+                monkeypatch.setattr(module, name, watched(value))
+    solver.solve(CASE)
+    assert callers
+    assert threading.main_thread() not in callers
+
+
 @needs_kill
 @pytest.mark.parametrize("what", ["integer-program", "linear-program", "compiling-eils", "compiling-ils"])
 def test_what_cannot_be_stopped_is_not_waited_for(
@@ -109,6 +139,7 @@ def test_jobs_give_what_they_give_and_raise_what_they_raise() -> None:
     assert side_by_side([partial(job, number) for number in range(3)], lambda: None) == [0, 1, 2]
     assert threading.get_ident() in threads
     assert interruptible(partial(job, 7)) == 7
+    assert interruptible(partial(job, 7), lambda: None) == 7
     with pytest.raises(ZeroDivisionError):
         interruptible(lambda: 1 // 0)
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -84,3 +87,19 @@ def test_curves_do_not_replace_what_they_are_drawn_from(tmp_path: Path) -> None:
     history.write_text("update,episodes,completion\n0,0,0.25\n")
     with pytest.raises(ConfigError, match=r"--out is .*, which is the run"):
         plot_history((history,), out=history)
+
+
+@pytest.mark.parametrize(("backend", "drawn_with"), [("none-such", None), ("svg", "svg")])
+def test_the_environment_may_name_any_backend(backend: str, drawn_with: str | None) -> None:
+    """Its own to matplotlib's windows, of which pictures need none; one that there is stays chosen."""
+    code = "import mrta_zoo.eval.plot_history, mrta_zoo.eval.report.figure_style, matplotlib as m, os;" + (
+        "print(dict.__getitem__(m.rcParams, 'backend'), os.environ['MPLBACKEND'])"
+    )
+    found = subprocess.run(
+        [sys.executable, "-c", code], env={**os.environ, "MPLBACKEND": backend}, capture_output=True, text=True,
+        timeout=60, check=False,
+    )  # fmt: skip
+    assert found.stderr == ""
+    chosen, left = found.stdout.split()[-2:]
+    assert left == backend
+    assert drawn_with is None or chosen == drawn_with

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import threading
+import warnings
+
 import numpy as np
 import pytest
 
-from mrta_zoo.show.lettering import fitted, places_of_labels, text_width
+from mrta_zoo.show.lettering import any_letters, fitted, places_of_labels, text_width
 
 NOTHING = np.empty((0, 4))
 
@@ -48,3 +51,20 @@ def test_a_label_without_room_is_left_out() -> None:
     ((left, bottom),) = places_of_labels(np.array([[98.0, 98.0]]), ["7"], 6.5, NOTHING, (100.0, 100.0)).values()
     assert left < 94.5
     assert bottom < 94.0
+
+
+def test_pictures_in_several_threads_leave_the_filters_of_warnings_as_they_were() -> None:
+    before = list(warnings.filters)
+    entered = threading.Event()
+
+    def second() -> None:
+        with any_letters():
+            entered.set()
+
+    thread = threading.Thread(target=second)
+    with any_letters():
+        thread.start()
+        assert not entered.wait(0.05)  # it would take these filters for those to put back
+    thread.join()
+    assert entered.is_set()
+    assert warnings.filters == before

@@ -34,6 +34,8 @@ def make_plans(config: TrainConfig, folder: Path, workers: int = 1, console: Con
     if len(have) >= config.imitation_plans:
         return have
     require("solvers", "making plans to imitate")
+    from mrta_zoo.policies.classical.local_search import eils
+
     console = console or messages_console()
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -47,6 +49,7 @@ def make_plans(config: TrainConfig, folder: Path, workers: int = 1, console: Con
         TimeRemainingColumn(),
     )  # fmt: skip
     say(console, f"{folder}: makes {missing * SHARD:,} plans to imitate")
+    eils.compile_once()  # for the processes, which find it on disk; if it cannot be kept, this one says so for all
     with (
         Progress(*fitting(columns, console), console=console, disable=not console.is_terminal) as progress,
         pool_of(workers) as pool,

@@ -9,10 +9,11 @@ import torch
 from torch import Tensor, nn
 
 from mrta_zoo.env.settings import ObservationForm
+from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.neural.actor_critic import ActorCritic
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.policy import NeuralPolicy
-from mrta_zoo.policies.neural.sharing import IndependentNetworks, build_network
+from mrta_zoo.policies.neural.sharing import IndependentNetworks, build_network, seeded
 from mrta_zoo.policies.neural.weights import PolicyInfo
 from mrta_zoo.policies.protocol import Policy
 
@@ -61,8 +62,7 @@ def build(kind: Kind, features: int, actions: int, seed: int) -> Mlp | ActorCrit
         actions: number of actions.
         seed: of the weights.
     """
-    with torch.random.fork_rng(devices=[]):
-        torch.manual_seed(seed)
+    with seeded(seed):
         if kind == "mlp":
             return Mlp(features, actions)
         return ActorCritic(build_network(NetworkConfig(embedding=32, heads=4), "shared", robots=1, seed=seed))
@@ -80,6 +80,7 @@ class GreedyPolicy:
     def __init__(self, *networks: Mlp) -> None:
         self.networks = networks
 
+    @few_threads()
     @torch.no_grad()
     def act(self, observation: Mapping[str, Any], agent: str) -> int:
         """The task to take."""

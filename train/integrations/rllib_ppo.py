@@ -20,6 +20,7 @@ from ray.tune.registry import register_env
 from torch import Tensor
 
 from mrta_zoo import mrta_v0
+from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.train.integrations.networks import FORM, Kind, as_policy, build
 from mrta_zoo.train.integrations.problem import options, show
@@ -84,6 +85,7 @@ def configure(
     )
 
 
+@few_threads()
 def train(
     seed: int = 0,
     iterations: int = 10,

@@ -13,6 +13,7 @@ from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv
 
 from mrta_zoo.env.gym_view import ActingRobotEnv
 from mrta_zoo.env.settings import ObservationForm
+from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.train.integrations.problem import options, show
 
 
@@ -24,12 +25,14 @@ class MaskablePolicy:
     def __init__(self, model: MaskablePPO) -> None:
         self.model = model
 
+    @few_threads()
     def act(self, observation: dict[str, Any], agent: str = "") -> int:
         """The likeliest task."""
         action, _ = self.model.predict(observation, deterministic=True, action_masks=observation["action_mask"])
         return int(action)
 
 
+@few_threads()
 def train(seed: int = 0, steps: int = 15_000, copies: int = 8, processes: bool = False) -> MaskablePolicy:
     """Train on the small problem.
 

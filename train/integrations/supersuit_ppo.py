@@ -18,6 +18,7 @@ from stable_baselines3.common.utils import set_random_seed
 
 from mrta_zoo import mrta_v0
 from mrta_zoo.plan import Plan
+from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.train.integrations.problem import options, show
 
@@ -39,6 +40,7 @@ class Planner:
     def __init__(self, model: PPO) -> None:
         self.model = model
 
+    @few_threads()
     def plan(self, scenario: Scenario) -> Plan:
         """The plan that the likeliest actions make."""
         env = make_env()
@@ -55,6 +57,7 @@ def vectorised(env: Any, count: int) -> Any:
     return supersuit.concat_vec_envs_v1(envs, count, num_cpus=1, base_class="stable_baselines3")
 
 
+@few_threads()
 def learn(envs: Any, steps: int, seed: int = 0) -> PPO:
     """SB3's PPO on a vector environment."""
     set_random_seed(seed)  # by `PPO(seed=…)` SB3 would seed the environments, in a way that SuperSuit's don't know

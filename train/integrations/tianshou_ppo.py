@@ -20,6 +20,7 @@ from torch import Tensor, nn
 from torch.distributions import Categorical
 
 from mrta_zoo.env.gym_view import ActingRobotEnv
+from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.train.integrations.networks import FORM, Kind, as_policy, build
 from mrta_zoo.train.integrations.problem import TASKS, options, show
@@ -56,6 +57,7 @@ class Critic(nn.Module):
         return value
 
 
+@few_threads()
 def train(seed: int = 0, epochs: int = 5, network: Kind = "mlp") -> Policy:
     """Train on the small problem.
 

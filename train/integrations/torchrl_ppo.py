@@ -20,6 +20,7 @@ from torchrl.objectives.value import GAE
 
 from mrta_zoo import mrta_v0
 from mrta_zoo.env.observation import split
+from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.train.integrations.networks import Kind, as_policy, build
 from mrta_zoo.train.integrations.problem import ROBOTS, TASKS, options, show
@@ -39,6 +40,7 @@ def make_env(seed: int, **changes: Any) -> PettingZooWrapper:
         return PettingZooWrapper(env, use_mask=True, group_map=MarlGroupMapType.ALL_IN_ONE_GROUP, seed=seed)
 
 
+@few_threads()
 def train(seed: int = 0, iterations: int = 5, network: Kind = "mlp") -> Policy:
     """Train on the small problem.
 

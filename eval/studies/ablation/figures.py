@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import pandas as pd
-from matplotlib.figure import Figure
 
 from mrta_zoo.eval.report.figure_style import FAINT, INK, new_figure, plain
 from mrta_zoo.eval.significance import LEVEL
 from mrta_zoo.eval.studies.ablation.study import Comparison, Study
+from mrta_zoo.extras import importing
+
+with importing("report", "a figure"):
+    from matplotlib.figure import Figure
 
 SURE, UNSURE = "#0072b2", "#868f98"
 COLOURS = ("#22303c", "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00")

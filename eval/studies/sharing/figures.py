@@ -6,14 +6,17 @@ from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure
 from scipy import stats
 
 from mrta_zoo.eval.report.figure_style import FAINT, INK, new_figure, plain
 from mrta_zoo.eval.significance import LEVEL
 from mrta_zoo.eval.studies.sharing.arms import Question
 from mrta_zoo.eval.studies.sharing.study import Study
+from mrta_zoo.extras import importing
 from mrta_zoo.policies.neural.sharing import Sharing
+
+with importing("report", "a figure"):
+    from matplotlib.figure import Figure
 
 COLOURS: dict[Sharing, str] = {"shared": "#0072b2", "by-capacity": "#009e73", "independent": "#d55e00"}
 MARKERS: dict[Sharing, str] = {"shared": "o", "by-capacity": "s", "independent": "^"}

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mrta_zoo.extras import require
+from mrta_zoo.extras import importing
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.show.axes import plain
 from mrta_zoo.show.lanes import deadline_lanes
@@ -20,14 +20,11 @@ from mrta_zoo.show.palette import FAINT, GROUND, INK, robot_colour
 from mrta_zoo.show.view import shown_time
 from mrta_zoo.verify import Score, Visit
 
-try:
+with importing("plot", "a picture"):
     from matplotlib.collections import LineCollection
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
     from matplotlib.patheffects import withStroke
-except Exception:  # it is not there, or broken
-    require("plot", "a picture")
-    raise
 
 LATE = "#000000"
 BAR, APART, LANE = 20.0, 9.0, 3.0

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from mrta_zoo.extras import require
+from mrta_zoo.extras import importing
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import FloatArray, Scenario
 from mrta_zoo.show.axes import plain
@@ -21,13 +21,10 @@ from mrta_zoo.show.plan.starts import PAD, SIZE, StartLabel, start_labels
 from mrta_zoo.show.view import shown_box
 from mrta_zoo.verify import Score
 
-try:
+with importing("plot", "a picture"):
     from matplotlib.lines import Line2D
     from matplotlib.patheffects import withStroke
     from matplotlib.ticker import MaxNLocator
-except Exception:  # it is not there, or broken
-    require("plot", "a picture")
-    raise
 
 LATE = "#000000"
 MOST_NUMBERED = 150

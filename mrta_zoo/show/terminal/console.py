@@ -8,7 +8,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
-from typing import Any
+from typing import Any, NoReturn
 
 from rich.console import Console
 from rich.progress import (
@@ -43,6 +43,10 @@ class LiteralConsole(Console):
     def render_str(self, text: str, **options: Any) -> Text:
         """The text, for every string that is printed or stands in a table."""
         return super().render_str(spelt_out(text), **options)
+
+    def on_broken_pipe(self) -> NoReturn:
+        """Leave to the command what becomes of a reader that has gone, where rich would end the process."""
+        raise  # the BrokenPipeError that is being handled
 
 
 def results_console() -> LiteralConsole:

@@ -64,5 +64,5 @@ class _OptionalCache:
 
 @cache
 def _say_not_kept() -> None:
-    if multiprocessing.parent_process() is None:  # which says it for all
+    if multiprocessing.parent_process() is None:  # else that has compiled before, and said it for all
         logging.getLogger(__name__).warning(NOT_KEPT)

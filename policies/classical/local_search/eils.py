@@ -16,6 +16,7 @@ import math
 import time
 from dataclasses import dataclass
 from functools import cache, partial
+from operator import itemgetter
 from threading import Event
 
 import numpy as np
@@ -38,6 +39,9 @@ from mrta_zoo.policies.classical.local_search.tours import (
 from mrta_zoo.policies.interruption import interruptible, side_by_side
 from mrta_zoo.scenario import FloatArray, Scenario
 from mrta_zoo.verify import verify
+
+Worth = tuple[int, float]
+"""Of tours; the greater, the better."""
 
 CHUNK = 100
 """Iterations at one temperature, at most."""
@@ -126,19 +130,22 @@ class EilsSolver:
         begun = time.perf_counter()
         problem, stopped = make_problem(scenario), stop or Event()
 
-        def search(number: int) -> Tours:
+        def search(number: int) -> tuple[Worth, Tours]:
             rng = np.random.default_rng((self._seed, number) if number else self._seed)
-            return _search(problem, tours_of(problem, scenario, plan), rng, begun, self._budget, self._config, stopped)
+            tours = tours_of(problem, scenario, plan)
+            best = _search(problem, tours, rng, begun, self._budget, self._config, stopped)
+            return worth(best), best
 
-        found = side_by_side([partial(search, number) for number in range(self._threads)], stopped.set)
-        best = max(found, key=worth)
+        searches = [partial(search, number) for number in range(self._threads)]
+        found = side_by_side([partial(interruptible, each, stopped.set) for each in searches], stopped.set)
+        best = max(found, key=itemgetter(0))[1]
         if verify(scenario, plan).completed > best.size.sum():  # one late visit, dropped, made another late by rounding
             return Plan(plan.routes, scenario.name, method)
         return plan_of(best, scenario, method)
 
 
-def worth(tours: Tours) -> tuple[int, float]:
-    """The greater, the better: visits, then time saved."""
+def worth(tours: Tours) -> Worth:
+    """Visits, then time saved."""
     return int(tours.size.sum()), -total_time(tours)
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import time
 from functools import cache, partial
+from threading import Event
 
 import numpy as np
 import numpy.typing as npt
@@ -45,22 +46,23 @@ class IlsSolver:
 
     def solve(self, scenario: Scenario) -> Plan:
         """A plan for `scenario`."""
-        return _solve(scenario, self._budget)
+        stopped = Event()
+        return interruptible(partial(_solve, scenario, self._budget, stopped), stopped.set)
 
 
 @cache
 def compile_once() -> None:
     """Compile the search, so that no plan has to wait for it."""
-    interruptible(partial(_solve, smallest_scenario(), None))
+    interruptible(partial(_solve, smallest_scenario(), None, Event()))
 
 
-def _solve(scenario: Scenario, budget: float | None) -> Plan:
+def _solve(scenario: Scenario, budget: float | None, stopped: Event) -> Plan:
     begun = time.perf_counter()
     problem = make_problem(scenario)
     tours, best, shift = empty_tours(problem), empty_tours(problem), np.empty(problem.work.shape)
     state = np.array([0, 1, 0])
     over = False
-    while not over:
+    while not over and not stopped.is_set():
         search(problem, tours, best, shift, state, CHUNK)
         idle = state[IDLE] >= ROUNDS_WITHOUT_IMPROVEMENT
         over = idle if budget is None else time.perf_counter() - begun >= budget

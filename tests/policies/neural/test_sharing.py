@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,7 +20,7 @@ from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
 from mrta_zoo.policies.neural.policy import NeuralPolicy, load_policy
 from mrta_zoo.policies.neural.rollout import roll_out
-from mrta_zoo.policies.neural.sharing import ByCapacityNetworks, IndependentNetworks, Sharing, build_network
+from mrta_zoo.policies.neural.sharing import ByCapacityNetworks, IndependentNetworks, Sharing, build_network, seeded
 from mrta_zoo.policies.neural.weights import PolicyInfo, save_policy
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.reinforce import Reinforce
@@ -199,3 +200,18 @@ def test_each_kind_learns_from_its_own_robots_alone() -> None:
     weak_now, strong_now = (list(network.parameters()) for network in run.network.networks)
     assert all(torch.equal(one, other) for one, other in zip(weak, weak_now, strict=True))
     assert not all(torch.equal(one, other) for one, other in zip(strong, strong_now, strict=True))
+
+
+def test_networks_built_in_several_threads_are_those_built_alone() -> None:
+    """The second waits until the first, which found torch's generator as it was, has put it back."""
+    alone = build_network(SMALL, "shared", 1, seed=1).state_dict()
+    built: list[dict[str, torch.Tensor]] = []
+    thread = threading.Thread(target=lambda: built.append(build_network(SMALL, "shared", 1, seed=1).state_dict()))
+    before = torch.get_rng_state()
+    with seeded(2):
+        thread.start()
+        thread.join(0.05)
+        assert built == []
+    thread.join()
+    assert torch.equal(torch.get_rng_state(), before)
+    assert all(torch.equal(each, alone[name]) for name, each in built[0].items())

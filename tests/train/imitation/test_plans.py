@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
@@ -69,6 +70,22 @@ def test_a_process_that_dies_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(plans, "make_shard", dies)
     with pytest.raises(ConfigError, match="a process that was at work was killed"):
         plans.make_plans(PRESETS["capam-plus"], tmp_path / "plans")
+
+
+def test_the_search_is_compiled_for_the_processes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """So that it is said where that cannot be kept: other processes than the first leave it to that."""
+    pytest.importorskip("numba")
+    begun: list[str] = []
+    monkeypatch.setattr("mrta_zoo.policies.classical.local_search.eils.compile_once", lambda: begun.append("compiling"))
+
+    def pool(_: int) -> NoReturn:
+        begun.append("processes")
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(plans, "pool_of", pool)
+    with pytest.raises(KeyboardInterrupt):
+        plans.make_plans(PRESETS["capam-plus"], tmp_path / "plans")
+    assert begun == ["compiling", "processes"]
 
 
 @pytest.mark.skipif(os.name != "posix", reason="sends POSIX signals")
