@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
+from mrta_zoo.digits import full
 from mrta_zoo.show.markup import table
 
 
@@ -38,5 +39,5 @@ class Row:
     def _repr_html_(self) -> str:
         """What a notebook shows."""
         values = ((each.name, getattr(self, each.name)) for each in fields(self))
-        rows = [(name, f"{value:.4g}" if isinstance(value, float) else value) for name, value in values]
+        rows = [(name, full(value) if isinstance(value, float) else value) for name, value in values]
         return table(f"{self.method} on {self.case}", ("", ""), rows)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from statistics import fmean
 
+from mrta_zoo.digits import rounded, share
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.show.terminal.sheet import Sheet
 
@@ -24,12 +25,12 @@ def summary_tables(rows: Sequence[Row], best_known: Mapping[str, int] | None = N
     compared = [row for row in rows if row.case in known]
     if compared:
 
-        def share(group: Sequence[Row]) -> str:
+        def of_best(group: Sequence[Row]) -> str:
             return _percent([row.completed / known[row.case] for row in group])
 
-        tables.append(_table("Share of the best known plan's tasks, mean %", compared, share))
+        tables.append(_table("Share of the best known plan's tasks, mean %", compared, of_best))
     tables.append(
-        _table("Planning time, mean milliseconds", rows, lambda group: f"{1000 * fmean(r.seconds for r in group):.1f}")
+        _table("Planning time, mean milliseconds", rows, lambda group: rounded(1000 * fmean(r.seconds for r in group)))
     )
     return tables
 
@@ -58,4 +59,4 @@ def _cells(group: Sequence[Row], methods: Sequence[str], cell: Cell) -> list[str
 
 
 def _percent(shares: Sequence[float]) -> str:
-    return f"{100 * fmean(shares):.1f}"
+    return share(fmean(shares))

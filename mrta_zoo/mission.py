@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from mrta_zoo.digits import full
 from mrta_zoo.errors import ActionError
 from mrta_zoo.rules import (
     MaskReason,
@@ -228,7 +229,7 @@ class Mission:
             raise ActionError(f"there is no robot {robot}; the scenario has {self.scenario.num_robots}")
         if self.retired[robot] or self.ready[robot] != self.time:
             raise ActionError(
-                f"robot {name(robot)} is not free at time {self.time:g}; robot {name(self.actor)} is to act"
+                f"robot {name(robot)} is not free at time {full(self.time)}; robot {name(self.actor)} is to act"
             )
         if self.heading[robot] >= 0:
             raise ActionError(
@@ -244,6 +245,6 @@ class Mission:
             choices = np.flatnonzero(self.mask(robot)).tolist()
             shown = ", ".join(map(named, choices[:10])) + (", …" if len(choices) > 10 else "")
             raise ActionError(
-                f"robot {name(robot)} may not choose task {named(task)} at time {self.time:g}: {reason}; "
+                f"robot {name(robot)} may not choose task {named(task)} at time {full(self.time)}: {reason}; "
                 f"its choices are {shown or 'none'}"
             )

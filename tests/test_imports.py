@@ -20,6 +20,7 @@ LAYERS = (
         (
             "mrta_zoo.errors",
             "mrta_zoo.wording",
+            "mrta_zoo.digits",
             "mrta_zoo.bounds",
             "mrta_zoo.extras",
             "mrta_zoo.registration",
@@ -47,13 +48,7 @@ PACKAGES = {
     "train": "mrta_zoo.train",
     "eval": "mrta_zoo.eval",
 }
-VERIFY_MAY_IMPORT = {
-    "mrta_zoo.scenario",
-    "mrta_zoo.plan",
-    "mrta_zoo.errors",
-    "mrta_zoo.show.markup",
-    "mrta_zoo.wording",
-}
+VERIFY_MAY_IMPORT = {"mrta_zoo.scenario", "mrta_zoo.plan", "mrta_zoo.errors", "mrta_zoo.wording"}
 HEAVY = ("torch", "matplotlib", "scipy", "tyro", "rich", "pygame")
 
 

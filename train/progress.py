@@ -8,6 +8,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
+from mrta_zoo.digits import share
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.outputs import write_elsewhere
 from mrta_zoo.policies.neural.weights import save_policy
@@ -71,7 +72,7 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
             board.add(event.update, {"validation/completion": event.completion, "validation/cost": event.cost})
             board.flush()  # before the checkpoint, after which they do not come again
             _save(folder, run, now - begun)
-            shown = f"{100 * event.completion:.2f} %"
+            shown = f"{share(event.completion, 2)} %"
             progress.update(bar, completion=shown)
             note = "  (baseline replaced)" if event.baseline_replaced else ""
             say(
@@ -82,7 +83,7 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
     best = run.best
     say(
         console,
-        f"Best validation completion {100 * best.completion:.2f} % at update {best.update}; "
+        f"Best validation completion {share(best.completion, 2)} % at update {best.update}; "
         f"the policy is in {folder / 'policy.safetensors'}",
     )
 

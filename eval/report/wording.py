@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from mrta_zoo.digits import percentage as percent
 from mrta_zoo.eval.significance import LEAST_OF_STRATUM, LEVEL, TOO_FEW, Estimate
 
 INTERVAL = f"{100 * LEVEL:.0f} % interval"
@@ -19,6 +20,13 @@ def estimate(value: Estimate, digits: int = 1, signed: bool = False) -> str:
     if value.low is None or value.high is None:
         return f"{mean} ({TOO_FEW})"
     return f"{mean} [{number(value.low, digits, signed)}, {number(value.high, digits, signed)}]"
+
+
+def percentage(value: Estimate) -> str:
+    """A mean of percentages with its interval in brackets, if there is one; see `digits.percentage`."""
+    mean, *ends = (None if each is None else percent(each).replace("-", "−")
+                   for each in (value.mean, value.low, value.high))  # fmt: skip
+    return f"{mean} ({TOO_FEW})" if None in ends else f"{mean} [{', '.join(map(str, ends))}]"
 
 
 def number(value: float, digits: int = 1, signed: bool = False) -> str:

@@ -60,7 +60,7 @@ def estimate_table(
     column: str,
     name: str,
     caption: str,
-    cell: Callable[[Estimate], str] = wording.estimate,
+    cell: Callable[[Estimate], str] = wording.percentage,
 ) -> Table:
     """Means of a column with intervals: a line for each method, a column for each group of cases.
 

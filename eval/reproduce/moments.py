@@ -45,7 +45,7 @@ def moments_section(study: Study) -> Section:
             for method, estimate in found.items():
                 if len(present) > 1 and estimate.mean == best:
                     bold.add((len(shown), len(cells)))
-                cells[method] = wording.estimate(estimate)
+                cells[method] = wording.percentage(estimate)
             for method, name in paper.NAMES.items():
                 theirs = paper.COMPLETION[method].get((tasks, group.robots))
                 cells[f"paper: {name}"] = wording.DASH if theirs is None else f"{theirs:.1f}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pandas as pd
 
+from mrta_zoo.digits import share
 from mrta_zoo.eval.report import wording
 from mrta_zoo.eval.report.parts import Picture, Section, Table
 from mrta_zoo.eval.reproduce.figures import draw_gaps
@@ -44,8 +45,8 @@ def optimality_section(study: Study) -> Section:
         shown.append(
             {
                 "method": method,
-                "mean gap, %": wording.estimate(gap),
-                "optimal": f"{optimal} of {len(rows)} ({100 * optimal / len(rows):.0f} %)",
+                "mean gap, %": wording.percentage(gap),
+                "optimal": f"{optimal} of {len(rows)} ({share(optimal / len(rows))} %)",
                 "largest gap, tasks": str(int((rows["optimum"] - rows["completed"]).max())),
                 "mean time": wording.seconds(rows["seconds"].mean()),
             }

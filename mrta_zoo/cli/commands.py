@@ -13,6 +13,7 @@ from tyro.conf import Positional, arg
 
 from mrta_zoo.cli.flags import names, optional, parse
 from mrta_zoo.cli.solved_files import write_schedule, write_solved
+from mrta_zoo.digits import rounded
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.runner import evaluate, solve_and_score
@@ -150,7 +151,7 @@ def solve_command(argv: Sequence[str]) -> None:
                 "picture", command.plot, lambda path: save_plan_picture(scenario, solved.plan, path, solved.score)
             )
         console = results_console()
-        say(console, f"{scenario.name}: {scenario.size}, planned by {method} in {solved.seconds:.3f} s")
+        say(console, f"{scenario.name}: {scenario.size}, planned by {method} in {rounded(solved.seconds, 3)} s")
         console.print(schedule_table(scenario, solved.score), crop=False)
         say(console, totals(solved.score))
         for line in missed(scenario, solved.plan, solved.score):

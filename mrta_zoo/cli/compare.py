@@ -18,6 +18,7 @@ from mrta_zoo.debug.advisors import Advisor, make_advisor
 from mrta_zoo.debug.called import called
 from mrta_zoo.debug.comparison import Alternative, Comparison, Fate, Outcome, Parting, compare
 from mrta_zoo.debug.percent import percent
+from mrta_zoo.digits import rounded
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io import read_scenario
 from mrta_zoo.io.destination import check_destination, check_distinct
@@ -28,6 +29,7 @@ from mrta_zoo.policies.registry import method_names
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.show.terminal.console import preparing, results_console, say
 from mrta_zoo.show.terminal.sheet import Sheet
+from mrta_zoo.show.view import Digits
 from mrta_zoo.verify import COST
 from mrta_zoo.wording import counted
 
@@ -132,7 +134,7 @@ def report(found: Comparison, methods: tuple[str, str], rows: int) -> list[str |
     """What there is to say, as lines and tables with at most so many rows."""
     first, second = methods
     scenario = found.traces[0].scenario
-    robots, tasks = scenario.robot_names, scenario.task_names
+    robots, tasks, digits = scenario.robot_names, scenario.task_names, Digits.of(scenario)
     parts: list[str | Group] = [_outcomes(found, methods)]
     if found.parting is None:
         return [*parts, f"{first} and {second} do the same throughout"]
@@ -145,7 +147,7 @@ def report(found: Comparison, methods: tuple[str, str], rows: int) -> list[str |
             [
                 (
                     each.index,
-                    each.time,
+                    digits.time(each.time),
                     called(each.robot, robots),
                     _task(each.chosen, scenario),
                     _task(each.advised, scenario),
@@ -164,9 +166,9 @@ def report(found: Comparison, methods: tuple[str, str], rows: int) -> list[str |
                     called(each.robot, robots),
                     each.turn,
                     _named(each.tasks[0], tasks),
-                    each.finish[0],
+                    _time(each.finish[0], digits),
                     _named(each.tasks[1], tasks),
-                    each.finish[1],
+                    _time(each.finish[1], digits),
                 )
                 for each in found.turns
             ],
@@ -181,8 +183,8 @@ def report(found: Comparison, methods: tuple[str, str], rows: int) -> list[str |
                 ("task", "deadline", "robot", "finish", f"by {methods[1 - index]}"),
                 [
                     (
-                        called(each.task, tasks), each.deadline, _named(each.robots[index], robots),
-                        each.finish[index], _fate(each, 1 - index, scenario),
+                        called(each.task, tasks), digits.time(each.deadline), _named(each.robots[index], robots),
+                        _time(each.finish[index], digits), _fate(each, 1 - index, scenario),
                     )
                     for each in fates
                 ],
@@ -202,27 +204,32 @@ def _outcomes(found: Comparison, methods: tuple[str, str]) -> Group:
 
 
 def _figures(outcome: Outcome) -> tuple[object, ...]:
-    return outcome.completed, f"{outcome.cost:.3f}", outcome.distance, outcome.makespan
+    return outcome.completed, f"{outcome.cost:.3f}", rounded(outcome.distance), rounded(outcome.makespan)
 
 
 def _fate(fate: Fate, index: int, scenario: Scenario) -> str:
     """What one of the two makes of a task that it doesn't complete."""
     robot, late = fate.robots[index], fate.finish[index]
-    return "not taken" if robot is None or late is None else f"late, by {scenario.robot_name(robot)} at {late:.1f}"
+    if robot is None or late is None:
+        return "not taken"
+    return f"late, by {scenario.robot_name(robot)} at {Digits.of(scenario).time(late)}"
 
 
 def _parted(parting: Parting, methods: tuple[str, str], scenario: Scenario) -> Group:
+    digits = Digits.of(scenario)
     probable = [
         index for index in range(2) if any(choice.probabilities[index] is not None for choice in parting.choices)
     ]  # plans have none
 
     def row(method: str, choice: Alternative) -> tuple[object, ...]:
         likely = [None if each is None else percent(each) for each in (choice.probabilities[i] for i in probable)]
-        return method, _task(choice.task, scenario), choice.distance, choice.finish, choice.slack, *likely
+        distance = None if choice.distance is None else digits.distance(choice.distance)
+        times = (_time(each, digits) for each in (choice.finish, choice.slack))
+        return method, _task(choice.task, scenario), distance, *times, *likely
 
     return _listed(
-        f"They part at decision {parting.index}, at {parting.time:.1f}, when {scenario.robot_name(parting.robot)} "
-        "chooses",
+        f"They part at decision {parting.index}, at {digits.time(parting.time)}, when "
+        f"{scenario.robot_name(parting.robot)} chooses",
         ("method", "task", "distance", "finish", "slack", *(f"% {methods[index]}" for index in probable)),
         [row(method, choice) for method, choice in zip(methods, parting.choices, strict=True)],
         2,
@@ -254,7 +261,11 @@ def _listed(title: str, columns: Sequence[str], rows: Sequence[Sequence[object]]
 
 
 def _cell(value: object) -> str:
-    return "-" if value is None else f"{value:.1f}" if isinstance(value, float) else str(value)
+    return "-" if value is None else str(value)
+
+
+def _time(value: float | None, digits: Digits) -> str | None:
+    return None if value is None else digits.time(value)
 
 
 def _task(task: int | None, scenario: Scenario) -> str:

@@ -12,6 +12,7 @@ from tyro.conf import arg
 
 from mrta_zoo.cli.case_choice import read_all, shown_cases
 from mrta_zoo.cli.flags import names, optional, parse
+from mrta_zoo.digits import full, percentage, rounded
 from mrta_zoo.errors import ConfigError, MissingExtraError
 from mrta_zoo.eval.converge.curves import BudgetRow, curves_of, draw_curves
 from mrta_zoo.eval.experiment import make_manifest, measure, open_experiment, resumable
@@ -111,12 +112,12 @@ def _tell(curves: pd.DataFrame, outputs: Outputs) -> None:
     console = results_console()
     console.print(
         Sheet(
-            "",
-            ("tasks", "method", "budget, s", "measured, s", f"completed, mean % [{wording.INTERVAL}]", "cases"),
+            f"Tasks completed, mean % with its {wording.INTERVAL} over cases; budget and time taken in seconds",
+            ("tasks", "method", "budget", "took", "completed", "cases"),
             [
                 (
-                    str(line["tasks"]), line["method"], _number(line["budget"]), f"{line['mean_seconds']:.3f}",
-                    f"{line['mean_percent']:.1f} [{_ends(line)}]", str(line["cases"]),
+                    str(line["tasks"]), line["method"], _number(line["budget"]), rounded(line["mean_seconds"], 3),
+                    f"{percentage(line['mean_percent'])} [{_ends(line)}]", str(line["cases"]),
                 )
                 for line in curves.to_dict("records")
             ],
@@ -126,8 +127,8 @@ def _tell(curves: pd.DataFrame, outputs: Outputs) -> None:
     )  # fmt: skip
     say(
         console,
-        "Intervals are over cases, which are the same for all methods: a difference between two methods can be sure "
-        "even where their intervals overlap (mrta-zoo reproduce tests it).",
+        "The cases are the same for all methods: a difference between two methods can be sure even where their "
+        "intervals overlap (mrta-zoo reproduce tests it).",
     )
     for line in outputs.written:
         say(console, line)
@@ -195,9 +196,9 @@ def _usual(wanted: Sequence[str]) -> list[str]:
 
 
 def _number(value: float) -> str:
-    return wording.DASH if value != value else f"{value:g}"
+    return wording.DASH if value != value else full(value)
 
 
 def _ends(line: dict[str, float | None]) -> str:
     low, high = line["low"], line["high"]
-    return str(line["note"]) if low is None or low != low or high is None else f"{low:.1f}, {high:.1f}"
+    return str(line["note"]) if low is None or low != low or high is None else f"{percentage(low)}, {percentage(high)}"

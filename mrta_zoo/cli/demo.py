@@ -11,6 +11,7 @@ from rich.console import Console
 from mrta_zoo import mrta_v0
 from mrta_zoo.cli.commands import builtin_cases, run_with_progress
 from mrta_zoo.cli.solved_files import write_solved
+from mrta_zoo.digits import full, rounded, share
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.runner import solve_and_score
 from mrta_zoo.eval.table import summary_tables
@@ -26,6 +27,7 @@ from mrta_zoo.show.plan.picture import save_plan_picture
 from mrta_zoo.show.plan.text import totals
 from mrta_zoo.show.terminal.console import results_console, say
 from mrta_zoo.show.terminal.sheet import Sheet
+from mrta_zoo.show.view import Digits
 from mrta_zoo.wording import counted
 
 STEPS_SHOWN = 10
@@ -74,7 +76,7 @@ def run_demo(folder: Path, policy_name: str = "capam-plus") -> None:
     _heading(console, "4. A plan as a picture")
     with cpu_threads(1):
         solved = solve_and_score(make_solver(policy_name), scenarios[DRAWN])
-    say(console, f"{DRAWN} planned by {policy_name} in {solved.seconds:.3f} s:")
+    say(console, f"{DRAWN} planned by {policy_name} in {rounded(solved.seconds, 3)} s:")
     say(console, totals(solved.score))
     write_solved(solved, folder / "plan.json")
     save_plan_picture(scenarios[DRAWN], solved.plan, folder / "plan.png", solved.score)
@@ -95,7 +97,7 @@ def show_steps(console: Console, policy: Policy, scenario: Scenario, steps: int)
     env.reset()
     say(console, f"{scenario.name}: {scenario.size}")
     rows: list[tuple[str, ...]] = []
-    turns = 0
+    turns, digits = 0, Digits.of(scenario)
     for agent in env.agent_iter():
         observation, _, termination, truncation, info = env.last()
         if termination or truncation:
@@ -105,12 +107,9 @@ def show_steps(console: Console, policy: Policy, scenario: Scenario, steps: int)
         reason = why_now(env.mission)
         env.step(task)
         if turns < steps:
-            rows.append(
-                (
-                    f"{info['time']:.1f}", agent, reason, f"task {task}", str(int(observation["action_mask"].sum())),
-                    f"{env.mission.finish[task]:.1f}", f"{scenario.deadline[task]:g}",
-                )
-            )  # fmt: skip
+            choices = str(int(observation["action_mask"].sum()))
+            done, due = digits.time(env.mission.finish[task]), full(scenario.deadline[task])
+            rows.append((digits.time(info["time"]), agent, reason, f"task {task}", choices, done, due))
         turns += 1
     headings = ("time", "robot", WHY, "chose", "out of", "done at", "deadline")
     console.print(Sheet("", headings, rows, left=("robot", WHY), prose=WHY), crop=False)
@@ -128,7 +127,9 @@ def why_now(mission: Mission) -> str:
         return f"free, as {_listed(also_free)} {'is' if len(also_free) == 1 else 'are'}; lowest number first"
     busy = [robot for robot in range(mission.scenario.num_robots) if mission.heading[robot] >= 0]
     if busy:
-        return "free first; busy: " + ", ".join(f"robot_{robot} until {mission.ready[robot]:.1f}" for robot in busy)
+        digits = Digits.of(mission.scenario)
+        until = ", ".join(f"robot_{robot} until {digits.time(mission.ready[robot])}" for robot in busy)
+        return f"free first; busy: {until}"
     return "the only one with anything left to choose"
 
 
@@ -140,7 +141,7 @@ def show_training(console: Console, folder: Path) -> None:
     completion = [each.completion for each in history]
     say(
         console,
-        f"validation completion {100 * completion[0]:.1f} % -> {100 * completion[-1]:.1f} %  {spark_line(completion)}",
+        f"validation completion {share(completion[0])} % -> {share(completion[-1])} %  {spark_line(completion)}",
     )
 
 

@@ -24,10 +24,8 @@ from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import TOLERANCE, Choice, tightest_rule
 
-LEAST, FEW = 1e-4, 10
-"""Probabilities below are left out of a choice, unless they are among the few that are greatest."""
 DIGITS = 6
-"""Of a probability that is kept, and of what the likeliest task's lacks to 1."""
+"""Of a probability, and of what the likeliest task's lacks to 1."""
 
 
 class Thought(Protocol):
@@ -124,7 +122,7 @@ class PolicyAdvisor(Advisor):
         if not isinstance(policy, Probabilistic):
             return Choice(as_action(agent, policy.act(observation, agent), scenario.num_tasks)), policy
         thought = policy.decide(observation)
-        return Choice(as_action(agent, thought.action, scenario.num_tasks), _sparse(thought.probabilities)), policy
+        return Choice(as_action(agent, thought.action, scenario.num_tasks), _exact(thought.probabilities)), policy
 
 
 class PlanAdvisor(Advisor):
@@ -223,16 +221,13 @@ def _fork(policy: Policy) -> Policy:
     return forked
 
 
-def _sparse(probabilities: npt.NDArray[np.floating]) -> dict[int, float]:
-    """Those that are not next to nothing, and a few that are, likeliest first.
-
-    The likeliest has what the others leave, which float32 may round to nothing.
-    """
+def _exact(probabilities: npt.NDArray[np.floating]) -> dict[int, float]:
+    """Those that are not 0, likeliest first. The likeliest has what the others leave: float32 may round that away."""
     values = probabilities.astype(np.float64)
-    order = np.argsort(-values, kind="stable")
-    kept = [int(task) for rank, task in enumerate(order) if values[task] > (0.0 if rank < FEW else LEAST)]
-    sparse = {task: float(f"{values[task]:.{DIGITS}g}") for task in kept}
-    if kept and values[kept[0]] > 0.5 and abs(values.sum() - 1) < TOLERANCE:
-        rest = float(np.delete(values, kept[0]).sum())
-        sparse[kept[0]] = 1 - float(f"{rest:.{DIGITS}g}")
-    return sparse
+    order = np.argsort(-values, kind="stable").tolist()
+    exact = {task: float(f"{values[task]:.{DIGITS}g}") for task in order if values[task] > 0}
+    likeliest = order[0]
+    if values[likeliest] > 0.5 and abs(values.sum() - 1) < TOLERANCE:
+        rest = float(np.delete(values, likeliest).sum())
+        exact[likeliest] = 1 - float(f"{rest:.{DIGITS}g}")
+    return exact

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from rich.cells import cell_len, set_cell_size
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.show.shortened import shortened as shorter
 from mrta_zoo.wording import composed, listed
 
 LISTED = 8
@@ -75,10 +76,13 @@ def found(text: str, who: str, names: Sequence[str]) -> int:
     raise ConfigError(f"there is no {who} {text!r}; expected a name{number}; the {who}s are {known}")
 
 
-def shortened(name: str, most: int) -> str:
-    """A name in so many columns of a terminal, cut in the middle, as its ends tell names apart."""
+def shortened(name: str, most: int, among: Sequence[str] = ()) -> str:
+    """A name in so many columns of a terminal, cut where it is like the others or else in the middle."""
     if cell_len(name) <= most:
         return name
+    telling = shorter(name, lambda text: cell_len(text) <= most, among) if among else ""
+    if telling:
+        return telling
     tail = name
     while tail and (cell_len(tail) > (most - 1) // 2 or not cell_len(tail[0])):  # which would be an accent alone
         tail = tail[1:]

@@ -199,20 +199,23 @@ def _parting(traces: tuple[Trace, Trace], advisors: tuple[Advisor, Advisor]) -> 
     prospects = outlook(mission, robot)
     turn = len(mission.routes[robot])
     own = [_own_decision(trace, robot, turn) for trace in traces]
+    tasks = found[0].choice.task, found[1].choice.task
+    otherwise = [
+        _otherwise(trace, advisor, decision, task)
+        for trace, advisor, decision, task in zip(traces, advisors, own, tasks[::-1], strict=True)
+    ]
+    # What a method makes of a task is known best where it took it.
+    own_choices = [None if decision is None else decision.choice for decision in own]
+    others = [
+        choice if trace is None or decision is None else trace.choices[decision.index]
+        for choice, trace, decision in zip(own_choices, otherwise, own, strict=True)
+    ]
     first, second = (
-        _alternative(None if task is None else prospects[task], own)
-        for task in (found[0].choice.task, found[1].choice.task)
+        _alternative(None if task is None else prospects[task], thoughts)
+        for task, thoughts in zip(tasks, ((own_choices[0], others[1]), (others[0], own_choices[1])), strict=True)
     )
-    return Parting(
-        index,
-        found[0].time,
-        robot,
-        (first, second),
-        (
-            _otherwise(traces[0], advisors[0], own[0], second.task),
-            _otherwise(traces[1], advisors[1], own[1], first.task),
-        ),
-    )
+    one, other = (None if trace is None else outcome(trace) for trace in otherwise)
+    return Parting(index, found[0].time, robot, (first, second), (one, other))
 
 
 def _own_decision(trace: Trace, robot: int, turn: int) -> Decision | None:
@@ -221,27 +224,25 @@ def _own_decision(trace: Trace, robot: int, turn: int) -> Decision | None:
     return turns[turn] if turn < len(turns) else None
 
 
-def _alternative(prospect: Prospect | None, own: Sequence[Decision | None]) -> Alternative:
+def _alternative(prospect: Prospect | None, thoughts: Sequence[Choice | None]) -> Alternative:
     if prospect is None:
         return Alternative(None, None, None, None, (None, None))
-    likely = _probability(own[0], prospect.task), _probability(own[1], prospect.task)
+    likely = _probability(thoughts[0], prospect.task), _probability(thoughts[1], prospect.task)
     return Alternative(prospect.task, prospect.distance, prospect.finish, prospect.slack, likely)
 
 
-def _probability(decision: Decision | None, task: int) -> float | None:
-    if decision is None or decision.choice.probabilities is None:
-        return None
-    return decision.choice.probabilities.get(task, 0.0)
+def _probability(choice: Choice | None, task: int) -> float | None:
+    return None if choice is None or choice.probabilities is None else choice.probabilities.get(task, 0.0)
 
 
-def _otherwise(trace: Trace, advisor: Advisor, decision: Decision | None, task: int | None) -> Outcome | None:
-    """What comes if at this decision of the trace this task is taken, and then what its advisor says."""
+def _otherwise(trace: Trace, advisor: Advisor, decision: Decision | None, task: int | None) -> Trace | None:
+    """The episode in which, at this decision of the trace, this task is taken, and then what its advisor says."""
     if decision is None:
         return None
     before = trace.choices[: decision.index]
     if task is not None and not trace.mission(decision.index).mask(decision.robot)[task]:
         return None
-    return outcome(play(trace.scenario, advisor, (*before, Choice(task))))
+    return play(trace.scenario, advisor, (*before, Choice(task)))
 
 
 def _disagreements(trace: Trace, advisor: Advisor) -> list[Disagreement]:

@@ -11,6 +11,7 @@ import numpy as np
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.mission import Mission
 from mrta_zoo.rules import MaskReason, Status, travel_time
+from mrta_zoo.show.view import Digits
 
 SortKey = Literal["rank", "distance", "finish", "slack", "deadline", "task"]
 """By what tasks are listed: those that may be chosen first, then by the policy's probability or else by finish
@@ -40,6 +41,7 @@ class Prospect:
         rival_finish: when that robot would be done, were it its next; None if there is none.
         who: what people call the robot that took it or, if it is free, the rival; empty if there is neither.
         probability: the policy's, None if it has none.
+        digits: how times of its scenario are written.
     """
 
     task: int
@@ -57,24 +59,26 @@ class Prospect:
     rival_finish: float | None
     who: str
     probability: float | None
+    digits: Digits
 
     def __str__(self) -> str:
         """What there is to say of it besides numbers: why it may not be chosen, or who else could do it."""
+        time = self.digits.time
         if self.taken_by is not None and self.done is not None:
             doing = {
-                Status.ASSIGNED: f"{self.who} on it until {self.done:.1f}",
-                Status.COMPLETED: f"done by {self.who} at {self.done:.1f}",
-                Status.MISSED: f"late by {self.who} at {self.done:.1f}",
+                Status.ASSIGNED: f"{self.who} on it until {time(self.done)}",
+                Status.COMPLETED: f"done by {self.who} at {time(self.done)}",
+                Status.MISSED: f"late by {self.who} at {time(self.done)}",
             }
             return doing.get(self.status, f"taken by {self.who}")
         if self.reason == MaskReason.DEADLINE_PASSED:
             return "deadline passed"
         if self.reason == MaskReason.TOO_LATE:
-            return f"too late by {-self.slack:.1f}" if self.slack < 0 else "too late"
-        late = f"late by {-self.slack:.1f}; " if self.slack < 0 else ""
+            return f"too late by {time(-self.slack)}" if self.slack < 0 else "too late"
+        late = f"late by {time(-self.slack)}; " if self.slack < 0 else ""
         if self.rival is None or self.rival_finish is None:
             return late + "nobody else in time"
-        return late + f"{self.who} could by {self.rival_finish:.1f}"
+        return late + f"{self.who} could by {time(self.rival_finish)}"
 
 
 def outlook(
@@ -107,7 +111,7 @@ def outlook(
     others[robot] = np.inf
     others[others > deadline] = np.inf
     rival, soonest = others.argmin(axis=0), others.min(axis=0)
-    given = probabilities or {}
+    given, digits = probabilities or {}, Digits.of(scenario)
     columns = zip(
         which.tolist(), np.hypot(dx, dy).tolist(), travel.tolist(), finish.tolist(), (deadline - finish).tolist(),
         deadline.tolist(), mission.reasons(robot)[which].tolist(), mission.status[which].tolist(),
@@ -130,6 +134,7 @@ def outlook(
             rival_finish=first if taken_by < 0 and first < np.inf else None,
             who=scenario.robot_name(taken_by if taken_by >= 0 else who) if taken_by >= 0 or first < np.inf else "",
             probability=None if probabilities is None else given.get(task, 0.0),
+            digits=digits,
         )
         for task, distance, time, end, slack, due, reason, status, taken_by, done, who, first in columns
     ]

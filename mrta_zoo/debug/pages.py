@@ -12,8 +12,10 @@ from mrta_zoo.debug.called import called, cells, headings, shortened
 from mrta_zoo.debug.outlook import SortKey
 from mrta_zoo.debug.percent import percent
 from mrta_zoo.debug.stepper import Stepper
+from mrta_zoo.digits import full
 from mrta_zoo.rules import MaskReason
 from mrta_zoo.show.render.whereabouts import whereabouts
+from mrta_zoo.show.view import Digits
 from mrta_zoo.wording import counted
 
 Subject = Literal["tasks", "robots", "log", "help"]
@@ -50,11 +52,11 @@ class Row:
     tone: str = "plain"
     name: str = ""
 
-    def note(self, most: int, least: int) -> str:
+    def note(self, most: int, least: int, among: Sequence[str] = ()) -> str:
         """Its last cell, in so many columns if that can be had by shortening the name, though not below `least`."""
         text = self.cells[-1]
         room = cell_len(self.name) - (cell_len(text) - most)
-        return text.replace(self.name, shortened(self.name, max(room, least)), 1) if self.name else text
+        return text.replace(self.name, shortened(self.name, max(room, least), among), 1) if self.name else text
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +100,7 @@ def _tasks(stepper: Stepper, view: View) -> Listing:
     own = robot == stepper.robot
     advice, made = (stepper.advice, stepper.made) if own else (None, None)
     probable = advice is not None and advice.probabilities is not None
-    rows, scenario = [], stepper.scenario
+    rows, scenario, digits = [], stepper.scenario, Digits.of(stepper.scenario)
     choices = int(stepper.mission.mask(robot).sum())
     for each in stepper.outlook(robot, view.order):
         advised, chosen = advice is not None and each.task == advice.task, made is not None and each.task == made.task
@@ -107,11 +109,11 @@ def _tasks(stepper: Stepper, view: View) -> Listing:
         row = (
             ("*" if chosen else "") + (">" if advised else ""),
             *cells(each.task, scenario.task_names),
-            f"{each.distance:.1f}",
-            f"{each.travel:.1f}",
-            f"{each.finish:.1f}",
-            f"{each.slack:.1f}",
-            f"{each.deadline:.1f}",
+            digits.distance(each.distance),
+            digits.time(each.travel),
+            digits.time(each.finish),
+            digits.time(each.slack),
+            digits.time(each.deadline),
             *((share if free else "",) if probable else ()),
             str(each),
         )
@@ -127,7 +129,7 @@ def _tasks(stepper: Stepper, view: View) -> Listing:
 
 def _robots(stepper: Stepper) -> Listing:
     mission, scenario = stepper.mission, stepper.scenario
-    rows = []
+    rows, digits = [], Digits.of(scenario)
     for robot, route in enumerate(mission.routes):
         now = whereabouts(mission, robot)
         doing = {
@@ -138,9 +140,9 @@ def _robots(stepper: Stepper) -> Listing:
             "working": f"at task {scenario.task_name(mission.heading[robot])}",
         }[now.doing]
         row = (
-            *cells(robot, scenario.robot_names), f"({now.x:.1f}, {now.y:.1f})",
-            f"{scenario.capacity[robot]:g}", f"{scenario.speed[robot]:g}",
-            str(len(route)), f"{mission.ready[robot]:.1f}", str(int(mission.mask(robot).sum())), doing,
+            *cells(robot, scenario.robot_names), f"({digits.distance(now.x)}, {digits.distance(now.y)})",
+            full(scenario.capacity[robot]), full(scenario.speed[robot]),
+            str(len(route)), digits.time(mission.ready[robot]), str(int(mission.mask(robot).sum())), doing,
         )  # fmt: skip
         tone = "advised" if now.doing == "acting" else "faint" if now.doing == "retired" else "plain"
         rows.append(Row(row, tone, _named(mission.heading[robot], scenario.task_names)))
@@ -153,7 +155,7 @@ def _robots(stepper: Stepper) -> Listing:
 def _log(stepper: Stepper) -> Listing:
     """The decisions made so far, the last one first."""
     trace, scenario = stepper.trace(), stepper.scenario
-    rows = []
+    rows, digits = [], Digits.of(scenario)
     for mission, decision in trace.replay():
         if decision.index == stepper.position:
             break
@@ -162,10 +164,10 @@ def _log(stepper: Stepper) -> Listing:
         finish = None if task is None else float(mission.finish_if[decision.robot, task])
         words = "" if choice.advice is None else f"the policy's choice was task {scenario.task_name(choice.advice)}"
         row = (
-            str(decision.index), f"{decision.time:.1f}", called(decision.robot, scenario.robot_names),
+            str(decision.index), digits.time(decision.time), called(decision.robot, scenario.robot_names),
             "stays" if task is None else scenario.task_name(task),
-            "" if finish is None else f"{finish:.1f}",
-            "" if finish is None or task is None else f"{scenario.deadline[task] - finish:.1f}", words,
+            "" if finish is None else digits.time(finish),
+            "" if finish is None or task is None else digits.time(scenario.deadline[task] - finish), words,
         )  # fmt: skip
         tone = "plain" if choice.advice is None else "made"
         rows.append(Row(row, tone, _named(choice.advice, scenario.task_names)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+from mrta_zoo.digits import share
 
 FINEST = 1e-3
 """The least distance from 100 % that is written out."""
@@ -15,14 +15,7 @@ def percent(probability: float, only: bool = False) -> str:
         probability: 0 to 1. As networks compute and traces round, 0 stands for next to none, and 1 for nearly all.
         only: there was nothing else to choose, so that 1 is 1.
     """
-    text = f"{100 * probability:.1f}"
-    if text not in ("0.0", "100.0") or (only and probability == 1):
-        return text
-    if text == "0.0":
-        return f"{100 * probability:.2g}" if probability > 0 else "<0.1"
-    rest = 100 * (1 - probability)
-    if rest == 0:
-        return ">99.9"
-    if rest < FINEST:
-        return ">99.999"
-    return f"{100 - rest:.{1 - math.floor(math.log10(rest))}f}"
+    if probability == 0:
+        return "<0.1"
+    nearly_all = 100 * (1 - probability) < FINEST and not (only and probability == 1)
+    return f">{100 - FINEST}" if nearly_all else share(probability)

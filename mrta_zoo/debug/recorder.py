@@ -13,6 +13,9 @@ from mrta_zoo.policies.protocol import Policy, Solver
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import Choice, Trace, make
 
+LEAST, FEW = 1e-4, 10
+"""Probabilities below are not written down, unless they are among the few that are greatest."""
+
 
 def record(scenario: Scenario, method: str | Policy | Solver | Plan, **options: Any) -> Trace:
     """The episode in which this method decides, with its probabilities if it has some.
@@ -52,10 +55,23 @@ def play(scenario: Scenario, advisor: Advisor, first: Sequence[Choice] = ()) -> 
             if len(choices) < len(first):
                 choice = overrule(choice, first[len(choices)].task)
         make(mission, choice, len(choices))
-        choices.append(choice)
+        choices.append(recorded(choice))
     return Trace(
         scenario, tuple(choices), advisor.mask_rule, advisor.method, advisor.decode, advisor.seed, advisor.bound
     )
+
+
+def recorded(choice: Choice) -> Choice:
+    """A choice as it is written down: without what is next to impossible, but for a few of it, and what was chosen."""
+    if choice.probabilities is None:
+        return choice
+    likeliest = sorted(choice.probabilities.items(), key=lambda each: -each[1])  # ties stay in order
+    kept = {
+        task: probability
+        for rank, (task, probability) in enumerate(likeliest)
+        if rank < FEW or probability > LEAST or task in (choice.task, choice.advice)
+    }
+    return replace(choice, probabilities=kept)
 
 
 def overrule(advice: Choice, task: int | None) -> Choice:

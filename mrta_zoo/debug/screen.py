@@ -12,9 +12,11 @@ from rich.text import Text
 from mrta_zoo.debug.called import shortened
 from mrta_zoo.debug.pages import Listing
 from mrta_zoo.debug.session import Session
+from mrta_zoo.digits import rough
 from mrta_zoo.rules import Status
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.show.terminal.fold import clipped
+from mrta_zoo.show.view import Digits
 
 AROUND = 11
 """Lines of a screen besides the rows of the table: the header, the table's title, head and foot, message and prompt."""
@@ -52,8 +54,8 @@ def header(session: Session, width: int) -> list[RenderableType]:
             "bold",
         ),
         (
-            f"time {mission.time:.1f}  {place}  {count[Status.COMPLETED]} completed, {count[Status.ASSIGNED]} under "
-            f"way, {count[Status.MISSED]} missed, {count[Status.ACTIVE]} open",
+            f"time {Digits.of(scenario).time(mission.time)}  {place}  {count[Status.COMPLETED]} completed, "
+            f"{count[Status.ASSIGNED]} under way, {count[Status.MISSED]} missed, {count[Status.ACTIVE]} open",
             "",
         ),
     ]
@@ -76,10 +78,12 @@ def table(session: Session, rows: int, width: int) -> list[RenderableType]:
     for index, needed in widths.items():
         column = listing.columns[index]
         shown.add_column(column, justify="left" if column in listing.left else "right", no_wrap=True, width=needed)
+    alike = [tuple(sorted(set(cells))) for cells in zip(*(row.cells for row in listing.rows), strict=True)]
+    named = tuple(sorted({row.name for row in listing.rows}))
     for row in page:
         cells = [
-            clipped(row.note(needed, LEAST_NAME), needed) if index == len(row.cells) - 1
-            else shortened(row.cells[index], needed)
+            clipped(row.note(needed, LEAST_NAME, named), needed) if index == len(row.cells) - 1
+            else shortened(row.cells[index], needed, alike[index])
             for index, needed in widths.items()
         ]  # fmt: skip
         shown.add_row(*map(Text, cells), style=STYLES[row.tone])
@@ -92,7 +96,8 @@ def column_widths(listing: Listing, width: int) -> tuple[dict[int, int], int]:
     """The columns that there is room for with their widths, and the room between two.
 
     Numbers have what they need. Where there is no room, first names are shortened, those in notes, too; then columns
-    are left out, those that can be spared first; then the notes in the last column are cut.
+    are left out, those that can be spared first; then the notes in the last column are cut. At the very least there
+    is what the row is about.
     """
     needed = {
         index: max(cell_len(cell) for cell in (column, *(row.cells[index] for row in listing.rows)))
@@ -120,8 +125,9 @@ def column_widths(listing: Listing, width: int) -> tuple[dict[int, int], int]:
         if over():
             del widths[listing.columns.index(column)]
     narrow(last, LEAST_NOTE)
-    if over():
-        del widths[last]
+    for index in [index for index in reversed(widths) if index > min(1, last - 1)]:
+        if over():
+            del widths[index]
     return widths, between
 
 
@@ -140,12 +146,12 @@ def _turn(session: Session, width: int) -> str:
     """Who chooses, and what its policy thinks; what has no room is left out, beginning with the speed."""
     stepper = session.stepper
     robot, scenario, advice = stepper.robot, stepper.scenario, stepper.advice
-    x, y = stepper.mission.position[robot]
-    who = shortened(scenario.robot_name(robot), 16)
+    x, y = map(Digits.of(scenario).distance, stepper.mission.position[robot])
+    who = shortened(scenario.robot_name(robot), 16, scenario.robot_names)
     about = [
-        f" at ({x:.1f}, {y:.1f})",
-        f"capacity {scenario.capacity[robot]:.3g}",
-        f"speed {scenario.speed[robot]:.3g}",
+        f" at ({x}, {y})",
+        f"capacity {rough(scenario.capacity[robot])}",
+        f"speed {rough(scenario.speed[robot])}",
     ]
     what = "chooses"
     if advice is not None:
@@ -157,12 +163,13 @@ def _turn(session: Session, width: int) -> str:
 
 def _task(scenario: Scenario, task: int, most: int) -> str:
     """A task's name in so many columns, or its number."""
-    return shortened(scenario.task_name(task), most) if scenario.task_names else f"task {task}"
+    return shortened(scenario.task_name(task), most, scenario.task_names) if scenario.task_names else f"task {task}"
 
 
 def _queue(session: Session, width: int) -> str:
     """Who chooses after the acting robot, as many as there is room for."""
-    mission = session.stepper.mission
+    mission, scenario = session.stepper.mission, session.stepper.scenario
+    digits = Digits.of(scenario)
     waiting = sorted(
         (ready, robot)
         for robot, ready in enumerate(mission.ready)
@@ -170,6 +177,9 @@ def _queue(session: Session, width: int) -> str:
     )
     if not waiting:
         return "the only robot left"
-    each = [f"{shortened(mission.scenario.robot_name(robot), 16)} at {ready:.1f}" for ready, robot in waiting]
+    each = [
+        f"{shortened(scenario.robot_name(robot), 16, scenario.robot_names)} at {digits.time(ready)}"
+        for ready, robot in waiting
+    ]
     lines = [f"next: {', '.join(each)}", *(f"next: {', '.join(each[:some])}, …" for some in range(NEXT_SHOWN, 0, -1))]
     return next((line for line in lines if cell_len(line) <= width), lines[-1])

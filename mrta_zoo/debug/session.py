@@ -15,6 +15,7 @@ from mrta_zoo.debug.stepper import Stepper
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io import read_trace
 from mrta_zoo.io.json_format import json_kind
+from mrta_zoo.show.view import Digits
 from mrta_zoo.trace import Choice
 from mrta_zoo.wording import counted
 
@@ -173,15 +174,16 @@ class Session:
 
     def where(self) -> str:
         """Where one stands, in a line."""
-        stepper = self.stepper
+        stepper, time = self.stepper, Digits.of(self.stepper.scenario).time
         if stepper.done:
             mission = stepper.mission
             return (
                 f"the mission is over: completed {mission.completed()} of "
-                f"{counted(stepper.scenario.num_tasks, 'task')}, cost {mission.cost():.3f}, makespan {mission.time:.1f}"
+                f"{counted(stepper.scenario.num_tasks, 'task')}, cost {mission.cost():.3f}, "
+                f"makespan {time(mission.time)}"
             )
         robot = stepper.scenario.robot_name(stepper.robot)
-        return f"decision {stepper.position}: {robot} chooses at {stepper.mission.time:.1f}"
+        return f"decision {stepper.position}: {robot} chooses at {time(stepper.mission.time)}"
 
     def _chosen(self, choose: Callable[[], Choice], own: bool = False) -> str:
         robot, index = self.stepper.robot, self.stepper.position
@@ -192,7 +194,7 @@ class Session:
         else:
             finish = float(self.stepper.mission.finish[choice.task])
             late = "" if finish <= scenario.deadline[choice.task] else ", late"
-            what = f"takes task {scenario.task_name(choice.task)}, until {finish:.1f}{late}"
+            what = f"takes task {scenario.task_name(choice.task)}, until {Digits.of(scenario).time(finish)}{late}"
         if choice.advice is not None:
             what += f" (the policy's choice: task {scenario.task_name(choice.advice)})"
         return f"decision {index}: {scenario.robot_name(robot)} {what}"

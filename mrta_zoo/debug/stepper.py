@@ -6,7 +6,7 @@ from typing import Any
 
 from mrta_zoo.debug.advisors import Advisor, make_advisor
 from mrta_zoo.debug.outlook import Prospect, SortKey, outlook, ranked
-from mrta_zoo.debug.recorder import overrule
+from mrta_zoo.debug.recorder import overrule, recorded
 from mrta_zoo.errors import ActionError, MrtaError
 from mrta_zoo.io import read_trace, write_trace
 from mrta_zoo.io.source import StrPath
@@ -256,7 +256,7 @@ class Stepper:
             self.mission.assign(choice.task)
         if made is None or made.task != choice.task:  # another course from here on
             here = self.position
-            self._choices[here:] = [choice]
+            self._choices[here:] = [recorded(choice)]
             self._advice = {index: advice for index, advice in self._advice.items() if index <= here}
             self._states = {index: state for index, state in self._states.items() if index <= here + 1}
         self.position += 1

@@ -39,6 +39,7 @@ from pettingzoo import ParallelEnv
 from pettingzoo.utils.env_logger import EnvLogger
 
 from mrta_zoo.bounds import as_finite
+from mrta_zoo.digits import full
 from mrta_zoo.env.base import EnvBase
 from mrta_zoo.env.settings import Illegal, Settings, TeamOptions, one_of, with_options
 from mrta_zoo.env.world import Info, next_legal
@@ -176,7 +177,7 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
         if robot not in self._choosing:
             there = robot < self.mission.scenario.num_robots
             why = " (the no-op): it is not free" if there else " (the no-op): the scenario has no such robot"
-        return ActionError(f"{agent} sent {what} at time {self.mission.time:g}; its valid actions are {shown}{why}")
+        return ActionError(f"{agent} sent {what} at time {full(self.mission.time)}; its valid actions are {shown}{why}")
 
     def _infos(self, losers: set[int]) -> dict[str, Info]:
         infos = self._world.infos()

@@ -10,6 +10,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from mrta_zoo.digits import full
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.source import check_name, shown
 from mrta_zoo.scenario import (
@@ -145,7 +146,9 @@ def _map_of(main: Part, agents: Part) -> MapRow | None:
 
 
 def _map_text(row: MapRow) -> str:
-    return f"{row.width:g} x {row.height:g}" + ("" if math.isnan(row.x) else f" from {row.x:g}, {row.y:g}")
+    return f"{full(row.width)} x {full(row.height)}" + (
+        "" if math.isnan(row.x) else f" from {full(row.x)}, {full(row.y)}"
+    )
 
 
 def _names(rows: Sequence[TaskRow | RobotRow], who: str) -> tuple[str, ...]:

@@ -6,7 +6,6 @@ Needs matplotlib (``mrta_zoo[plot]``), which it uses without its global state.
 from __future__ import annotations
 
 import warnings
-from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
@@ -16,13 +15,12 @@ import numpy as np
 
 from mrta_zoo.extras import importing
 from mrta_zoo.scenario import FloatArray
+from mrta_zoo.show.shortened import shortened
 
 with importing("plot", "a picture"):
     from matplotlib.font_manager import FontProperties
     from matplotlib.textpath import text_to_path
 
-SHORTEST = 5
-"""Letters that a shortened text must keep, the mark of what is missing included, to be worth showing."""
 AROUND = ((1, 1), (1, -1), (-1, 1), (-1, -1), (1, 0), (-1, 0), (0, 1), (0, -1))
 """Where a label may lie as seen from its place, the first choice first."""
 
@@ -49,23 +47,9 @@ def text_width(text: str, size: float, weight: str = "normal") -> float:
     return float(width)
 
 
-def fitted(text: str, room: float, size: float, weight: str = "normal") -> str:
-    """The text if it is no wider than the room; else shortened in the middle, as its ends tell names apart; else "".
-
-    Digits alone are never cut.
-    """
-    if text_width(text, size, weight) <= room:
-        return text
-    if text.isdecimal() or len(text) <= SHORTEST:
-        return ""
-
-    def shortened(kept: int) -> str:
-        return f"{text[: (kept + 1) // 2]}…{text[len(text) - kept // 2 :]}"
-
-    too_many = bisect_left(
-        range(len(text)), True, SHORTEST - 1, key=lambda kept: text_width(shortened(kept), size, weight) > room
-    )
-    return shortened(too_many - 1) if too_many >= SHORTEST else ""
+def fitted(text: str, room: float, size: float, weight: str = "normal", among: Sequence[str] = ()) -> str:
+    """The text if it is no wider than the room, else shortened; see `shortened.shortened`."""
+    return shortened(text, lambda form: text_width(form, size, weight) <= room, among)
 
 
 def round_number(value: float) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from unicodedata import bidirectional
 
+from mrta_zoo.digits import full, rounded
 from mrta_zoo.show.palette import FAINT, GROUND, URGENCY, blend, robot_colour
 
 MOST_ROWS = 20
@@ -17,7 +18,7 @@ _CELL = "text-align:left;padding:2px 12px 2px 0"
 
 
 def table(title: str, header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """A table under a title; floats are rounded to one decimal place.
+    """A table under a title; floats are rounded, see `digits.rounded`.
 
     Args:
         title: plain text, as are all cells.
@@ -76,7 +77,7 @@ def map_of(
         lines.append(
             f'<circle cx="{scale * (x - low[0]):.1f}" cy="{height - scale * (y - low[1]):.1f}" r="{radius:.1f}" '
             f'fill="{blend(URGENCY, deadline / horizon)}" stroke="{FAINT}" stroke-width="0.7">'
-            f"<title>{escape(name)}, deadline {deadline:g}</title></circle>"
+            f"<title>{escape(name)}, deadline {full(deadline)}</title></circle>"
         )
     for robot, (name, x, y) in enumerate(robots):
         lines.append(
@@ -92,4 +93,4 @@ def _from_right(character: str) -> bool:
 
 
 def _text(value: object) -> str:
-    return f"{value:.1f}" if isinstance(value, float) else str(value)
+    return rounded(value) if isinstance(value, float) else str(value)

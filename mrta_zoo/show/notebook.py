@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from mrta_zoo.digits import full, rounded, share
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.show.markup import in_order, map_of, table
@@ -20,15 +21,15 @@ from mrta_zoo.wording import counted
 def scenario_html(scenario: Scenario) -> str:
     """The ranges of what a scenario holds, and its map."""
     rows = [
-        (what, f"{values.min():g}", f"{values.mean():.4g}", f"{values.max():g}")
+        (what, full(values.min()), full(values.mean()), full(values.max()))
         for what, values in (
             ("deadline", scenario.deadline), ("workload", scenario.workload),
             ("capacity", scenario.capacity), ("speed", scenario.speed),
         )
     ]  # fmt: skip
     (x, y), (width, height) = scenario.map_origin, scenario.map_size
-    begins = f" from {x:.12g}, {y:.12g}" if x or y else ""
-    title = f"{scenario.name}: {scenario.size}, map {width:g} by {height:g}{begins}"
+    begins = f" from {full(x)}, {full(y)}" if x or y else ""
+    title = f"{scenario.name}: {scenario.size}, map {full(width)} by {full(height)}{begins}"
     tasks = [
         (f"task {scenario.task_name(task)}", *place, due)
         for task, (place, due) in enumerate(zip(scenario.task_xy.tolist(), scenario.deadline.tolist(), strict=True))
@@ -51,8 +52,9 @@ def plan_html(plan: Plan) -> str:
 def score_html(score: Score) -> str:
     """The scores, and what each robot did."""
     title = (
-        f"{score.completed} of {counted(score.tasks, 'task')} completed ({100 * score.completion:.1f} %), "
-        f"cost {score.cost:.3f}, distance {score.distance:.1f}, makespan {score.makespan:.1f} (cost by {COST})"
+        f"{score.completed} of {counted(score.tasks, 'task')} completed ({share(score.completion)} %), "
+        f"cost {score.cost:.3f}, distance {rounded(score.distance)}, makespan {rounded(score.makespan)} "
+        f"(cost by {COST})"
     )
     tasks = score.task_names or range(score.tasks)
     robots = score.robot_names or range(len(score.schedule))

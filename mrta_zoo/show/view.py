@@ -1,9 +1,12 @@
-"""What pictures show of a scenario: which part of the plane, and until when."""
+"""What is shown of a scenario: which part of the plane, until when, and how many digits of its times and distances."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from mrta_zoo.digits import decimals
 from mrta_zoo.scales import Scales, frame_of
 from mrta_zoo.scenario import FloatArray, Scenario
 
@@ -35,3 +38,38 @@ def shown_time(scenario: Scenario, makespan: float) -> float:
     """
     latest: float = Scales.of(scenario).time
     return max(makespan, min(latest, 2 * makespan or latest))
+
+
+@dataclass(frozen=True, slots=True)
+class Digits:
+    """Times and distances of a scenario as text, in as many digits as their units ask for.
+
+    Attributes:
+        of_times: digits after the point, >= 1.
+        of_distances: likewise.
+    """
+
+    of_times: int
+    of_distances: int
+
+    @classmethod
+    def of(cls, scenario: Scenario) -> Digits:
+        """Those that tell apart what half of the robots do on the map, and half of the deadlines."""
+        side = float(shown_box(scenario)[1].max())
+        speed, capacity, work, deadline = (
+            float(np.median(each)) for each in (scenario.speed, scenario.capacity, scenario.workload, scenario.deadline)
+        )
+        return cls(decimals(min(side / speed + work / capacity, deadline), 1), decimals(side, 1))
+
+    def time(self, value: float) -> str:
+        """A time."""
+        return _written(value, self.of_times)
+
+    def distance(self, value: float) -> str:
+        """A distance, or a place along an axis."""
+        return _written(value, self.of_distances)
+
+
+def _written(value: float, digits: int) -> str:
+    text = f"{value:.{digits}f}"
+    return text if text.strip("-0.") or value == 0 else f"{value:.1g}"  # what is next to nothing is not nothing

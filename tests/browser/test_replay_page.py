@@ -21,6 +21,7 @@ from mrta_zoo.policies.registry import make_solver
 from mrta_zoo.rules import Status
 from mrta_zoo.show.render.whereabouts import whereabouts
 from mrta_zoo.show.replay import write_replay
+from mrta_zoo.show.shortened import telling
 from mrta_zoo.show.view import shown_time
 from mrta_zoo.trace import Trace
 
@@ -412,6 +413,46 @@ def test_no_text_is_cut_or_on_another(browser, tmp_path, width, count):
     assert page.tab.evaluate(OVERLAPPING) == []
     page.tab.close()
     assert page.complaints == []
+
+
+STATIONS = replace(
+    SCENARIO, task_names=[f"Inspect pump station {j} (north wing)" for j in range(25)],
+    robot_names=[f"Boston Dynamics Spot {r} (leased)" for r in range(4)],
+)  # fmt: skip
+IN_HOURS = replace(
+    STATIONS, deadline=STATIONS.deadline / 3600, speed=STATIONS.speed * 3.6, capacity=STATIONS.capacity * 3600,
+    map_size=(0.05, 0.05), task_xy=STATIONS.task_xy / 1e3, robot_xy=STATIONS.robot_xy / 1e3,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("width", [360, 1280])
+@pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parametrize("scenario", [STATIONS, IN_HOURS], ids=["seconds", "hours"])
+def test_long_names_leave_tables_readable(browser, tmp_path, scenario, count, width):
+    traces = [record(scenario, "capam-plus"), record(scenario, "nearest", mask_rule="active")]
+    write_replay(traces[:count], tmp_path / "stations.html")
+    page = OpenPage(browser, (tmp_path / "stations.html").as_uri() + "#5", width=width, height=720)
+    assert page.tab.evaluate("document.documentElement.scrollWidth") <= width
+    assert page.tab.evaluate(OVERLAPPING) == []
+    heights = page.tab.locator("tbody tr").evaluate_all("rows => rows.map((row) => row.clientHeight)")
+    assert max(heights) < 140
+    for side in range(count):
+        names = page.texts(f"#side-{side} td.name")
+        numbers = page.tab.locator(f"#side-{side} tbody tr").evaluate_all("rows => rows.map((row) => row.dataset.task)")
+        assert [re.search(r"\d+", name)[0] for name in names] == numbers
+        robots = page.tab.locator(f"#side-{side} .who[data-robot]").all_text_contents()
+        assert all(re.fullmatch(rf"{robot}: .*{robot}\D*", text) for robot, text in enumerate(robots))
+    page.tab.close()
+    assert page.complaints == []
+
+
+def test_the_page_shortens_names_as_pictures_do(page):
+    for names in (
+        STATIONS.task_names, NAMED.task_names, ("Room 12 valve A", "Room 12 valve B", "Room 13 valve A"),
+        ("东泵站一号室", "东泵站二号室", "Spot 7", "Spot 17", "station 1", "station 12", "12.5 m", "12.7 m"),
+    ):  # fmt: skip
+        found = page.tab.evaluate("names => names.map((name) => telling(names).get(name))", list(names))
+        assert found == [[list(part) for part in telling(tuple(names))[name]] for name in names]
 
 
 def test_a_map_that_does_not_begin_at_0(browser, tmp_path):

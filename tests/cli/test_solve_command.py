@@ -14,9 +14,9 @@ from factories import hopeless_scenario, named_scenario
 
 from mrta_zoo import extras
 from mrta_zoo.cli.main import main
+from mrta_zoo.digits import decimals, full
 from mrta_zoo.io import json_format, read_plan, write_plan, write_scenario
 from mrta_zoo.plan import Plan
-from mrta_zoo.show.plan.text import decimals, full
 from mrta_zoo.wording import listed
 
 NEAREST = """\

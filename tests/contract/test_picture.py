@@ -205,9 +205,11 @@ def test_names_in_pictures(mission):
 def test_as_much_of_a_name_as_there_is_room_for():
     assert fitted("valve-A", "3", 17, 100) == "valve-A"
     short = fitted("valve-A of the north hall", "3", 17, 100)
-    assert short.startswith("valve-A of")
-    assert short.endswith("…")
+    assert short.startswith("valve-A…")
+    assert short.endswith("h hall")
     assert text_width(short, 17) <= 100
+    among = ["valve-A of the north hall", "valve-B of the north hall"]
+    assert fitted(among[0], "3", 17, 80, among).startswith("valve-A")
     assert fitted("弁", "3", 17, 100) == "3"  # which the font lacks
     assert fitted("valve-A", "3", 17, 0) == "…"
 

@@ -25,15 +25,15 @@ def test_text():
     env.reset()
     env.step(0)
     assert env.render().splitlines() == [
-        "two by two   time 0.0   2 tasks: 1 active, 1 assigned, 0 completed, 0 missed",
-        "due next: task 1 at 20.0",
+        "two by two   time 0.00   2 tasks: 1 active, 1 assigned, 0 completed, 0 missed",
+        "due next: task 1 at 20.00",
         "robot           x         y  taken  last tasks      doing",
-        "robot_0      0.00      0.00      1  -               on its way to task 0, until 13.0, deadline 20.0",
+        "robot_0      0.00      0.00      1  -               on its way to task 0, until 13.00, deadline 20.00",
         "robot_1      0.00      0.00      0  -               chooses now",
     ]
     env.step(1)
     assert env.render().splitlines() == [
-        "two by two   time 13.0   2 tasks: 0 active, 0 assigned, 2 completed, 0 missed   mission over",
+        "two by two   time 13.00   2 tasks: 0 active, 0 assigned, 2 completed, 0 missed   mission over",
         "robot           x         y  taken  last tasks      doing",
         "robot_0     10.00      0.00      1  0               is retired",
         "robot_1      0.00      2.00      1  1               is retired",
@@ -89,7 +89,7 @@ def test_text_of_many():
     for task in (4, 3, 2, 1, 0):
         mission.assign(task)
     _, due, _, robot = describe(mission).splitlines()
-    assert due == "due next: " + ", ".join(f"task {task} at {task + 1}.0" for task in range(5, 11)) + ", …"
+    assert due == "due next: " + ", ".join(f"task {task} at {task + 1}.00" for task in range(5, 11)) + ", …"
     assert robot.split()[3:] == ["5", "…", "2", "1", "0", "chooses", "now"]
 
 

@@ -87,7 +87,7 @@ def test_what_is_shown() -> None:
         ["3", "弁[red]", "100.0", "100.0", "100.0", "-80.0", "20.0", "too", "late", "by", "80.0"],
     ]
     assert len({cell_len(row[: re.search(r"\d\.0 ", row).end()]) for row in rows}) == 1  # type: ignore[union-attr]
-    assert "\n       0  0.0 Ann   pump…<b>     40.0  10.0 the policy's choice was task valve-A\n" in output
+    assert "\n       0  0.0 Ann   pump…3 <b>   40.0  10.0 the policy's choice was task valve-A\n" in output
     assert re.search(r"\n    1 Bob & Co +\(100\.0, 0\.0\) .* chooses now\n", output)
     assert prompt(session()).startswith("Enter: valve-A, or name; ")
 
@@ -139,8 +139,8 @@ def test_a_narrow_header_leaves_out_what_can_be_spared() -> None:
     steps = Session(Stepper(SITE, "nearest"))
     for width, told in ((100, "capacity 2, speed 1.5, "), (76, "capacity 2, "), (64, "")):
         line = header(steps, width)[2].plain  # type: ignore[union-attr]
-        assert line == f"Spot at (100.0, 30.0), {told}chooses; nearest advises transfor…tion 10", width
-    assert header(steps, 50)[2].plain == "Spot chooses; nearest advises transfor…tion 10"  # type: ignore[union-attr]
+        assert line == f"Spot at (100.0, 30.0), {told}chooses; nearest advises transformer s…10", width
+    assert header(steps, 50)[2].plain == "Spot chooses; nearest advises transformer s…10"  # type: ignore[union-attr]
     assert header(steps, 40)[3].plain == "next: Husky (t…re one) at 0.0, …"  # type: ignore[union-attr]
 
 

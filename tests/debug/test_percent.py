@@ -29,7 +29,7 @@ SCENARIO = small_scenario(2, tasks=12, robots=3)
     ("probability", "text"),
     [
         (0.623, "62.3"), (0.0005, "0.1"), (0.9994, "99.9"), (0.99996, "99.9960"), (0.999979, "99.9979"),
-        (1 - 1e-9, ">99.999"), (1.0, ">99.9"), (2.1e-5, "0.0021"), (3.4e-9, "3.4e-07"), (0.0, "<0.1"),
+        (1 - 1e-9, ">99.999"), (1.0, ">99.999"), (2.1e-5, "0.0021"), (3.4e-9, "3.4e-07"), (0.0, "<0.1"),
     ],
 )  # fmt: skip
 def test_texts(probability: float, text: str) -> None:
@@ -83,6 +83,20 @@ def test_step() -> None:
     assert not {"100.0", "0.0000"} & set(shown)
 
 
+def test_step_knows_all_probabilities_while_the_policy_is_at_hand() -> None:
+    # The eleventh task in line has e**-90 = 8.19e-40 of the first one's, and that is 1 - e**-9.
+    stepper = Stepper(small_scenario(2, tasks=30, robots=3), Certain())
+    for _ in range(2):
+        texts = [percent(each.probability) for each in stepper.outlook() if each.reason == MaskReason.CHOOSABLE]
+        assert texts[10] == "8.2e-38"
+        stepper.follow()
+        assert len(stepper.trace().choices[0].probabilities) == 10  # as many as are written down
+        stepper.back()
+    unlikely = [each.task for each in stepper.outlook() if each.reason == MaskReason.CHOOSABLE][10]
+    stepper.take(unlikely)
+    assert stepper.trace().choices[0].probabilities[unlikely] == pytest.approx(8.194e-40, rel=1e-3)
+
+
 def test_replay_and_traces(tmp_path: Path) -> None:
     trace = record(SCENARIO, Certain())
     write_trace(trace, tmp_path / "trace.json")
@@ -102,4 +116,5 @@ def test_compare() -> None:
     found = compare(SCENARIO, Certain(), Contrary())
     shown = [text for part in report(found, ("certain", "contrary"), 2) for text in texts_of(part)]
     assert shown.count("99.988") == 2
+    assert "<0.1" not in shown
     assert not {"100.0", "0.0"} & set(shown[shown.index("part") :][:40])

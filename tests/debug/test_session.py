@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -121,6 +122,21 @@ def test_a_screen_fits_and_pages_show_all(tasks: int, robots: int, sizes: list[t
             names = [row.cells[first].split()[0] for row in listing.rows]
             assert all(name in cells for name, cells in zip(names, seen, strict=True))
         assert len(prompt(steps)) < 75
+
+
+@pytest.mark.parametrize("width", [8, 13, 18, 24, 30, 33, 40])
+def test_no_number_is_cut_however_narrow(width: int) -> None:
+    scenario = small_scenario(2, tasks=12, robots=3)
+    scenario = replace(scenario, deadline=scenario.deadline * 1e3, workload=scenario.workload + 1234.5)
+    steps = Session(Stepper(scenario, "capam-plus"))
+    for command in ("goto 0", "goto 3", "robots", "log"):
+        steps.do(command)
+        listing = steps.listing()
+        shown = lines_of(screen(steps, 20, width), width)
+        known = {word for row in listing.rows for cell in row.cells for word in cell.split()}
+        for line in shown[8:-2]:
+            assert {word for word in line.split() if word[-1].isdigit() or word[0].isdigit()} <= known
+            assert not re.search(r"\d…", line)
 
 
 def test_marks_and_tones() -> None:

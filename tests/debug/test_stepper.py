@@ -200,7 +200,7 @@ def test_a_mission_in_which_nothing_can_be_done() -> None:
     stepper = Stepper(hopeless_scenario(), "nearest")
     assert stepper.done
     assert stepper.advice is None
-    assert str(stepper.outlook(0)[0]) == "too late by 54.0"  # 50 + 5 - 1
+    assert str(stepper.outlook(0)[0]) == "too late by 54.00"  # 50 + 5 - 1
     for act in (stepper.follow, stepper.stay, stepper.forward, lambda: stepper.take(0)):
         with pytest.raises(ActionError, match="the mission is over, after 0 decisions"):
             act()
@@ -251,15 +251,15 @@ def test_the_outlook_by_hand() -> None:
     assert (first.rival, str(first)) == (None, "nobody else in time")
     # Task 0: 10 away, 5 to travel, 1 to work; robot 1 is there and needs 4.
     assert (second.task, second.distance, second.travel, second.finish, second.slack) == (0, 10, 5, 6, 14)
-    assert (second.rival, second.rival_finish, str(second)) == (1, 4, "robot 1 could by 4.0")
+    assert (second.rival, second.rival_finish, str(second)) == (1, 4, "robot 1 could by 4.00")
     stepper.take(1)
     stepper.take(0)
     # At 4 robot 1 is done with task 0, has nothing left and retires; robot 0 too, at 4.5.
     assert stepper.done
-    assert [str(each) for each in stepper.outlook(0, "task")] == ["done by robot 1 at 4.0", "done by robot 0 at 4.5"]
+    assert [str(each) for each in stepper.outlook(0, "task")] == ["done by robot 1 at 4.00", "done by robot 0 at 4.50"]
     stepper.back()
     # Robot 0 would go 6 back from (0, 8), in 3, and work for 1.
-    assert [str(each) for each in stepper.outlook(by="task")] == ["robot 0 could by 8.5", "robot 0 on it until 4.5"]
+    assert [str(each) for each in stepper.outlook(by="task")] == ["robot 0 could by 8.50", "robot 0 on it until 4.50"]
     # Task 1 is due first, but taken: what may be chosen comes first.
     assert [each.task for each in stepper.outlook(by="deadline")] == [0, 1]
     with pytest.raises(ConfigError, match="there is no order 'name'; expected one of rank, distance"):

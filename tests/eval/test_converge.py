@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import csv
+import io
+import re
 from itertools import pairwise
 from pathlib import Path
 
 import pytest
 
-from mrta_zoo.cli.converge import every_of_each_size, seconds_of
+from mrta_zoo.cli.converge import _tell, every_of_each_size, seconds_of
 from mrta_zoo.cli.main import main
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.converge.curves import BudgetRow, curves_of, draw_curves
 from mrta_zoo.io import Case
+from mrta_zoo.io.outputs import Outputs
+from mrta_zoo.show.terminal.console import LiteralConsole
 from mrta_zoo.suite import builtin_suite
 
 
@@ -40,6 +44,23 @@ def test_budgets_make_a_line_and_methods_without_one_a_point() -> None:
     assert drawn == {(0.1, 1.0, 10.0): (40, 41, 42), (0.01,): (30,)}
     assert axes.get_xscale() == "log"
     assert {text.get_text() for text in axes.texts} == {"ils", "nearest,\nno budget"}
+
+
+@pytest.mark.parametrize("width", [36, 47, 60])
+def test_what_is_told_reads_well_on_a_narrow_terminal(width: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    console = LiteralConsole(file=io.StringIO(), width=width)
+    monkeypatch.setattr("mrta_zoo.cli.converge.results_console", lambda: console)
+    rows = [
+        BudgetRow(f"c{case}", "eils", 3000, 2, 2999 + case // 3, (2999 + case // 3) / 3000, 0.0, 0.0, 0.0, 4e-5, 0.1)
+        for case in range(4)
+    ]
+    with console.capture() as captured:
+        _tell(curves_of(rows, [("eils", 0.1)], 0), Outputs())
+    shown = captured.get()
+    for word in ("3000", "eils", "0.1", "0.0000400", "99.975"):  # three times 99.9667 %, and all
+        assert re.search(rf"(^|[\s\[]){re.escape(word)}($|[\s,\]])", shown, re.MULTILINE), word
+    if width < 53:
+        assert "\ntasks 3000, method eils, budget 0.1," in shown
 
 
 def test_names_at_the_end_of_lines_do_not_overlap() -> None:

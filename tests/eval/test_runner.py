@@ -109,7 +109,7 @@ def test_tables_group_by_size_and_compare_with_the_best_known() -> None:
     text = [line.split() for line in printed(share).splitlines()]
     assert ["100", "2", "1", "75.0", "50.0"] in text
     assert ["all", "2", "87.5", "50.0"] in text
-    assert ["all", "3", "2.0", "1.0"] in [line.split() for line in printed(seconds).splitlines()]
+    assert ["all", "3", "2.00", "1.00"] in [line.split() for line in printed(seconds).splitlines()]
     assert len(summary_tables(rows)) == 2
 
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
+from mrta_zoo.digits import percentage
 from mrta_zoo.eval.experiment import Manifest
 from mrta_zoo.eval.machine import Session
 from mrta_zoo.eval.report import wording
@@ -179,12 +180,12 @@ def _means(study: Study) -> Section:
         runs = found[name, distribution]
         overall = run_values(runs, equal_weights(ROBOTS))
         of_runs = {robots: run_values(runs, {robots: 1.0}) for robots in ROBOTS}
-        by_robots = {counted(robots, "robot"): f"{np.mean(of_runs[robots]):.1f}" for robots in ROBOTS}
-        each_run = ", ".join(f"{value:.1f}" for value in overall)
+        by_robots = {counted(robots, "robot"): percentage(float(np.mean(of_runs[robots]))) for robots in ROBOTS}
+        each_run = ", ".join(percentage(value) for value in overall)
         variant = study.variants[name]
         shown.append(
             {"variant": name, "what": variant.title, "held out": distribution, **by_robots,
-             "all": f"{np.mean(overall):.1f}", "each run": each_run}
+             "all": percentage(float(np.mean(overall))), "each run": each_run}
         )  # fmt: skip
         data += [
             {"variant": name, "held_out": distribution, "seed": seed,

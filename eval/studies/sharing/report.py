@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import pandas as pd
 
+from mrta_zoo.digits import share
 from mrta_zoo.eval.experiment import Manifest
 from mrta_zoo.eval.machine import Session
 from mrta_zoo.eval.report import wording
@@ -79,7 +80,7 @@ def _in_short(study: Study, name: str, comparisons: Sequence[Comparison]) -> str
     ]  # fmt: skip
     return (
         f"At {found[0].question.title}, {TRAINED}: {shared} completes "
-        f"{wording.estimate(study.mean(shared, TRAINED_ROBOTS))} %; against it {'; '.join(parts)}."
+        f"{wording.percentage(study.mean(shared, TRAINED_ROBOTS))} %; against it {'; '.join(parts)}."
     )
 
 
@@ -116,7 +117,7 @@ def _choices_in_short(choices: Sequence[Unlikeness]) -> list[str]:
 
 
 def _bits(each: Unlikeness) -> str:
-    return f"{each.divergence:.2f} bits (other likeliest task in {100 * each.disagreement:.0f} % of decisions)"
+    return f"{each.divergence:.2f} bits (other likeliest task in {share(each.disagreement)} % of decisions)"
 
 
 def _differences(study: Study, comparisons: Sequence[Comparison]) -> Section:
@@ -177,7 +178,7 @@ def _by_robots(study: Study) -> Section:
             {
                 "": name,
                 **{
-                    counted(robots, "robot"): wording.estimate(means[robots]) if robots in means else "no network"
+                    counted(robots, "robot"): wording.percentage(means[robots]) if robots in means else "no network"
                     for robots in study.held_out.robots
                 },
             }
@@ -207,7 +208,7 @@ def _choices(choices: Sequence[Unlikeness]) -> Section:
             "compared": each.pairs,
             "pairs": str(each.count),
             "divergence, bits": f"{each.divergence:.3f} ({each.least:.3f} to {each.most:.3f})",
-            "other likeliest task": f"{100 * each.disagreement:.0f} %",
+            "other likeliest task": f"{share(each.disagreement)} %",
         }
         for each in choices
     ]

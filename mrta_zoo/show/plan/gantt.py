@@ -37,6 +37,8 @@ TICKS = 5.0
 """For such ticks."""
 NAME, LABEL = 9.0, 7.0
 """Sizes of text."""
+LONGEST = 150.0
+"""Of a robot's name."""
 HIGH = 600.0
 """A chart higher than this has its numbers above it, too."""
 LEAST_FOR_NAME, LEAST_FOR_BOTH = 5.5, 22.0
@@ -55,6 +57,7 @@ class Schedule:
         bar: height of a bar.
         apart: between the rows of two robots.
         lane: height of a lane; 0 if deadlines are mere ticks.
+        numbered: robots whose number is before their name, as the map has no room for the name.
     """
 
     scenario: Scenario
@@ -64,6 +67,7 @@ class Schedule:
     bar: float = BAR
     apart: float = APART
     lane: float = LANE
+    numbered: frozenset[int] = frozenset()
 
     @classmethod
     def of(cls, scenario: Scenario, score: Score, least: float, most: float) -> Schedule:
@@ -143,7 +147,11 @@ class Schedule:
         least = min(self._row(robot) for robot in range(self.scenario.num_robots))
         if least < LEAST_FOR_NAME:
             return [""] * self.scenario.num_robots
-        names = [fitted(self.scenario.robot_name(robot), 150.0, NAME, "bold") for robot in range(len(self.lanes))]
+        scenario, names = self.scenario, []
+        for robot in range(scenario.num_robots):
+            number = f"{robot}: " if robot in self.numbered else ""
+            room = LONGEST - text_width(number, NAME, "bold")
+            names.append(number + fitted(scenario.robot_name(robot), room, NAME, "bold", scenario.robot_names))
         if least < LEAST_FOR_BOTH:
             return names
         return [f"{name}\n{_load(visits)}" for name, visits in zip(names, self.score.schedule, strict=True)]
@@ -180,8 +188,9 @@ class Schedule:
     def _write(self, axes: Any, visit: Visit, middle: float, room: float) -> None:
         """The name of a task in its bar, upright or on its side, if there is room for it."""
         name, height = self.scenario.task_name(visit.task), self.bar - 4.0
-        upright = fitted(name, room, LABEL) if height >= LABEL - 2.0 else ""
-        turned = fitted(name, height, LABEL) if room >= LABEL and upright != name else ""
+        among = self.scenario.task_names
+        upright = fitted(name, room, LABEL, among=among) if height >= LABEL - 2.0 else ""
+        turned = fitted(name, height, LABEL, among=among) if room >= LABEL and upright != name else ""
         on_its_side = len(turned) > len(upright)
         written = turned if on_its_side else upright
         if written:
@@ -214,7 +223,7 @@ class Schedule:
         axes.vlines(places, heights - half, heights + half, color=colour, linewidth=1.8, zorder=3)
         beyond = np.array([visit.deadline > self.end for visit in visits])
         if beyond.any():
-            axes.scatter(places[beyond], heights[beyond], marker=">", s=9, color=colour, zorder=3, clip_on=False)
+            axes.scatter(places[beyond], heights[beyond], marker=">", s=30, color=colour, zorder=3, clip_on=False)
         late = np.array([not visit.completed for visit in visits])
         if late.any():
             finish = np.array([visit.finish for visit in visits])[late]

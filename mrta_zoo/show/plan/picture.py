@@ -6,9 +6,11 @@ or without a display.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from mrta_zoo.digits import share
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.show.figure import LiteralFigure, save_picture
@@ -47,6 +49,7 @@ def draw_plan(scenario: Scenario, plan: Plan, score: Score | None = None) -> Lit
     chart = Schedule.of(scenario, score, LEAST, MOST)
     room = min(max(chart.height, LEAST), MAP[1])
     routes = RouteMap.of(scenario, plan, score, (MAP[0], room))
+    chart = replace(chart, numbered=routes.numbered())
     map_width = max(routes.size[0], 0.6 * LEAST)  # for the legend below
     left = SIDE + routes.left()
     chart_left = left + map_width + APART + chart.left()
@@ -85,7 +88,7 @@ def _title(scenario: Scenario, plan: Plan, score: Score) -> str:
     by = f", planned by {method}" if method else ""
     return (
         f"{name}{by}: {score.completed} of {counted(score.tasks, 'task')} completed "
-        f"({100 * score.completion:.1f} %), {late} late, {score.tasks - visited} not taken"
+        f"({share(score.completion)} %), {late} late, {score.tasks - visited} not taken"
     )
 
 

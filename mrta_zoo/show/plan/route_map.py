@@ -91,11 +91,16 @@ class RouteMap:
                          linewidths=0.8, zorder=4)  # fmt: skip
             axes.scatter(*self._xy(tasks[~completed]).T, s=1.6 * size, c=LATE, marker="x", linewidths=1.8, zorder=5)
         axes.scatter(*self._xy(~taken).T, s=0.7 * size, facecolors="white", edgecolors=FAINT, linewidths=1.0, zorder=3)
-        starts = self._starts() if self.scenario.num_robots <= MOST_NUMBERED else []
+        starts = self._starts()
         self._draw_starts(axes, starts)
         if numbered:
             self._draw_labels(axes, taken, starts)
         axes.set_title("Routes (distance units)", fontsize=10, color=FAINT, loc="left")
+
+    def numbered(self) -> frozenset[int]:
+        """The robots that it calls by number although they have names, which lack room."""
+        return frozenset(each.robot for each in self._starts() if self.scenario.robot_names and each.text.isdecimal()
+                         and each.text != self.scenario.robot_name(each.robot))  # fmt: skip
 
     def _ticks(self, side: int) -> list[float]:
         """Round numbers along x (0) or y (1), as many as have room."""
@@ -145,6 +150,8 @@ class RouteMap:
                 )  # fmt: skip
 
     def _starts(self) -> list[StartLabel]:
+        if self.scenario.num_robots > MOST_NUMBERED:
+            return []
         return start_labels(
             self._points(self.scenario.robot_xy), self.scenario.robot_names, self._marks(slice(None)), self.size
         )
@@ -165,7 +172,8 @@ class RouteMap:
     def _draw_labels(self, axes: Any, taken: Any, starts: Sequence[StartLabel]) -> None:
         """Names or numbers of tasks where they have room; tasks that robots do go first."""
         order = np.argsort(~taken, kind="stable")
-        names = [fitted(self.scenario.task_name(task), LONGEST, LABEL) for task in order.tolist()]
+        among = self.scenario.task_names
+        names = [fitted(self.scenario.task_name(task), LONGEST, LABEL, among=among) for task in order.tolist()]
         clear = np.concatenate((self._marks(order), np.reshape([each.box for each in starts], (-1, 4))))
         found = places_of_labels(self._points(self._xy(order)), names, LABEL, clear, self.size)
         for index, corner in found.items():

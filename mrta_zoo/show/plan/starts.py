@@ -67,7 +67,7 @@ def start_labels(
         named: list[tuple[Sequence[str], int]] = []
         if names and len(group) <= MOST_NAMES:
             for room in (LONGEST, SHORTER):
-                texts = [fitted(names[robot], room, SIZE, "bold") for robot in group]
+                texts = [fitted(names[robot], room, SIZE, "bold", names) for robot in group]
                 named += [(texts, 1)] if all(texts) else []
         numbered = [(_numbers(group), IN_A_ROW)] if len(group) > 1 else []
         found = (_free(places, group, *choice, taken, frame) for choice in [*named, *numbered])

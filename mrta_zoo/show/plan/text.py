@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-
+from mrta_zoo.digits import decimals, full, rounded, share
 from mrta_zoo.left_out import Reason, left_out
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
@@ -42,25 +41,14 @@ def proven(score: Score, bound: int | None) -> str:
     return f"not proven optimal: it may be; no plan completes more than {counted(bound, 'task')}"
 
 
-def decimals(largest: float, least: int) -> int:
-    """Digits after the point that leave the largest of some numbers three digits that count, but `least` of them."""
-    return max(least, 2 - math.floor(math.log10(largest))) if largest > 0 else least
-
-
-def full(time: float) -> str:
-    """A time as it was given, of which a large one keeps its last digits."""
-    return f"{time:g}" if time < 1e5 else f"{time:.12g}"
-
-
 def totals(score: Score) -> str:
     """All scores, on three lines."""
     visited = sum(len(visits) for visits in score.schedule)
     return (
-        f"completed {score.completed} of {counted(score.tasks, 'task')} ({100 * score.completion:.1f} %), "
+        f"completed {score.completed} of {counted(score.tasks, 'task')} ({share(score.completion)} %), "
         f"{visited - score.completed} late, {score.tasks - visited} not taken\n"
         f"cost {score.cost:.3f} ({COST})\n"
-        f"distance {score.distance:.{decimals(score.distance, 1)}f}, "
-        f"makespan {score.makespan:.{decimals(score.makespan, 1)}f}"
+        f"distance {rounded(score.distance)}, makespan {rounded(score.makespan)}"
     )
 
 

@@ -8,6 +8,7 @@ from rich.cells import cell_len
 from mrta_zoo.mission import Mission
 from mrta_zoo.rules import Status
 from mrta_zoo.show.render.whereabouts import whereabouts
+from mrta_zoo.show.view import Digits
 from mrta_zoo.wording import counted, listed
 
 _MOST_DUE, _LONGEST_TRAIL = 6, 3
@@ -19,7 +20,7 @@ def headline(mission: Mission) -> str:
     tasks = ", ".join(f"{counts[status]} {status.name.lower()}" for status in Status)
     over = "   mission over" if mission.done else ""
     number = counted(mission.scenario.num_tasks, "task")
-    return f"{mission.scenario.name}   time {mission.time:.1f}   {number}: {tasks}{over}"
+    return f"{mission.scenario.name}   time {Digits.of(mission.scenario).time(mission.time)}   {number}: {tasks}{over}"
 
 
 def describe(mission: Mission) -> str:
@@ -31,12 +32,16 @@ def describe(mission: Mission) -> str:
     lines = [headline(mission)]
     if due := _due_next(mission):
         lines.append(f"due next: {due}")
-    places = f"{'x':>8}  {'y':>8}  {'taken':>5}"
-    lines.append(f"{_filled('robot', width)}  {places}  {_filled('last tasks', trail_width)}  doing")
-    for robot, route in enumerate(mission.routes):
-        now = whereabouts(mission, robot)
+    here = [whereabouts(mission, robot) for robot in range(scenario.num_robots)]
+    digits = max(2, Digits.of(scenario).of_distances)
+    places = [(f"{now.x:.{digits}f}", f"{now.y:.{digits}f}") for now in here]
+    wide = max(8, *(len(each) for place in places for each in place))
+    lines.append(
+        f"{_filled('robot', width)}  {'x':>{wide}}  {'y':>{wide}}  taken  {_filled('last tasks', trail_width)}  doing"
+    )
+    for robot, (now, (x, y)) in enumerate(zip(here, places, strict=True)):
         lines.append(
-            f"{_filled(robots[robot], width)}  {now.x:8.2f}  {now.y:8.2f}  {len(route):5d}  "
+            f"{_filled(robots[robot], width)}  {x:>{wide}}  {y:>{wide}}  {len(mission.routes[robot]):5d}  "
             f"{_filled(trails[robot], trail_width)}  {_doing(mission, robot, now.doing)}"
         )
     return "\n".join(lines)
@@ -44,11 +49,11 @@ def describe(mission: Mission) -> str:
 
 def _due_next(mission: Mission) -> str:
     """The active tasks with the earliest deadlines."""
-    deadline, name = mission.scenario.deadline, mission.scenario.task_name
+    deadline, name, time = mission.scenario.deadline, mission.scenario.task_name, Digits.of(mission.scenario).time
     active = np.flatnonzero(mission.status == Status.ACTIVE)
     first = active[np.argsort(deadline[active], kind="stable")]
     more = ", …" if len(first) > _MOST_DUE else ""
-    return ", ".join(f"task {name(task)} at {deadline[task]:.1f}" for task in first[:_MOST_DUE].tolist()) + more
+    return ", ".join(f"task {name(task)} at {time(deadline[task])}" for task in first[:_MOST_DUE].tolist()) + more
 
 
 def _trail(mission: Mission, robot: int) -> str:
@@ -61,9 +66,9 @@ def _trail(mission: Mission, robot: int) -> str:
 
 
 def _doing(mission: Mission, robot: int, doing: str) -> str:
-    task, until = mission.heading[robot], mission.ready[robot]
+    task, time = mission.heading[robot], Digits.of(mission.scenario).time
     name = mission.scenario.task_name(task)  # of the last task where there is none, and not shown
-    when = f"until {until:.1f}, deadline {mission.scenario.deadline[task]:.1f}"
+    when = f"until {time(mission.ready[robot])}, deadline {time(mission.scenario.deadline[task])}"
     return {
         "acting": "chooses now",
         "waiting": "is free",

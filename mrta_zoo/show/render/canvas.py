@@ -6,6 +6,7 @@ Needs pygame (``mrta_zoo[render]``), of which it uses no display, so that it dra
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from functools import lru_cache
 from io import BytesIO
 from math import hypot
@@ -14,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from mrta_zoo.extras import require
+from mrta_zoo.show.shortened import shortened
 
 os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")  # a library does not advertise in its users' output
 require("render", "a picture")
@@ -87,15 +89,12 @@ def text_width(text: str, size: float) -> float:
     return _font(round(SCALE * size)).size(_shown(text))[0] / SCALE
 
 
-def fitted(name: str, otherwise: str, size: float, room: float) -> str:
-    """A name in so many pixels, its end left out if need be; `otherwise` if the font lacks one of its characters."""
+def fitted(name: str, otherwise: str, size: float, room: float, among: Sequence[str] = ()) -> str:
+    """A name in so many pixels, shortened if need be; `otherwise` if the font lacks one of its characters."""
     metrics = _font(round(SCALE * size)).metrics
     if metrics(_IN_NO_FONT)[0] in metrics(_shown(name)):  # which it draws as boxes
         return otherwise
-    if text_width(name, size) <= room:
-        return name
-    fits = (length for length in range(len(name) - 1, 0, -1) if text_width(name[:length] + "…", size) <= room)
-    return name[: next(fits, 0)] + "…"
+    return shortened(name, lambda text: text_width(text, size) <= room, among) or "…"
 
 
 def as_array(picture: pygame.Surface) -> npt.NDArray[np.uint8]:

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from mrta_zoo.digits import rough
 from mrta_zoo.mission import Mission
 from mrta_zoo.rules import Status
 from mrta_zoo.show.palette import FAINT, INK, MISSED, URGENCY, blend, robot_colour
 from mrta_zoo.show.render.canvas import Canvas, fitted, text_width
-from mrta_zoo.show.view import shown_time
+from mrta_zoo.show.view import Digits, shown_time
 from mrta_zoo.wording import counted
 
 _TOP, _ROW = 60.0, 22.0
@@ -68,7 +69,7 @@ def _draw_legend(canvas: Canvas, mission: Mission, left: float) -> None:
     for step in range(steps):
         canvas.rectangle((text + 22 + 2.5 * step, rows[1] - 5), (2.5, 10), blend(URGENCY, step / (steps - 1)))
     canvas.text("0", (text + 15, rows[1]), 16, FAINT, align=1.0)
-    canvas.text(f"{horizon:.4g}", (text + 29 + 2.5 * steps, rows[1]), 16, FAINT)
+    canvas.text(rough(horizon), (text + 29 + 2.5 * steps, rows[1]), 16, FAINT)
     canvas.disc((mark, rows[2]), 7.5, "#ffffff", INK, 2.6)
     canvas.text(f"{counts[Status.ASSIGNED]} assigned, ring of the robot's colour", (text, rows[2]), 17, INK)
     canvas.disc((mark, rows[3]), 4.6, INK, "#ffffff", 0.4)
@@ -81,26 +82,27 @@ def _draw_legend(canvas: Canvas, mission: Mission, left: float) -> None:
 
 def _sentence(mission: Mission, robot: int, doing: str) -> str:
     """What a robot does and, where robots have names, which one: its number is beside it."""
-    task, until, deadline = mission.heading[robot], mission.ready[robot], mission.scenario.deadline
+    task, time = mission.heading[robot], Digits.of(mission.scenario).time
+    until, due = time(mission.ready[robot]), time(mission.scenario.deadline[task])
     who = "{robot}: " if mission.scenario.robot_names else ""
     what = {
         "acting": "chooses now",
         "waiting": "is free",
         "retired": f"retired after {counted(len(mission.routes[robot]), 'task')}",
-        "travelling": f"to task {{task}}, done at {until:.1f}, due {deadline[task]:.1f}",
-        "working": f"at task {{task}} until {until:.1f}, due {deadline[task]:.1f}",
+        "travelling": f"to task {{task}}, done at {until}, due {due}",
+        "working": f"at task {{task}} until {until}, due {due}",
     }[doing]
     return _named(who + what, mission, robot, 17, _WIDTH - 29)
 
 
 def _words(mission: Mission, robot: int, doing: str) -> str:
-    until = mission.ready[robot]
+    until = Digits.of(mission.scenario).time(mission.ready[robot])
     what = {
         "acting": "chooses now",
         "waiting": "is free",
         "retired": f"retired ({len(mission.routes[robot])})",
-        "travelling": f"to {{task}}, done {until:.1f}",
-        "working": f"at {{task}} until {until:.1f}",
+        "travelling": f"to {{task}}, done {until}",
+        "working": f"at {{task}} until {until}",
     }[doing]
     return _named(what, mission, robot, 16, _WIDTH / 2 - 25)
 
@@ -110,6 +112,6 @@ def _named(what: str, mission: Mission, robot: int, size: float, room: float) ->
     scenario, task = mission.scenario, mission.heading[robot]
     left = (room - text_width(what.format(robot="", task=""), size)) / max(what.count("{"), 1)
     return what.format(
-        robot=fitted(scenario.robot_name(robot), f"robot {robot}", size, left),
-        task=fitted(scenario.task_name(task), str(task), size, left),
+        robot=fitted(scenario.robot_name(robot), f"robot {robot}", size, left, scenario.robot_names),
+        task=fitted(scenario.task_name(task), str(task), size, left, scenario.task_names),
     )

@@ -18,7 +18,7 @@ from mrta_zoo.show.palette import FAINT, GROUND, INK, MISSED, URGENCY, blend, ro
 from mrta_zoo.show.render.canvas import Canvas, Point, fitted, text_width
 from mrta_zoo.show.render.panel import draw_panel
 from mrta_zoo.show.render.whereabouts import whereabouts
-from mrta_zoo.show.view import shown_box, shown_time
+from mrta_zoo.show.view import Digits, shown_box, shown_time
 
 SIZE = (1040, 720)
 """Width and height in pixels; both even, as video formats want."""
@@ -39,7 +39,7 @@ def draw(mission: Mission) -> pygame.Surface:
     frame = _Frame.around(mission.scenario)
     name = mission.scenario.name
     canvas.text(fitted(name, name[:48], 25, _PANEL_LEFT - _LEFT - 20), (_LEFT, 27), 25, INK)
-    canvas.text(f"time {mission.time:.1f}", (_PANEL_LEFT, 27), 25, INK)
+    canvas.text(f"time {Digits.of(mission.scenario).time(mission.time)}", (_PANEL_LEFT, 27), 25, INK)
     _draw_ground(canvas, frame)
     detail = min(1.0, max(0.45, 11.0 / mission.scenario.num_tasks**0.5))  # smaller marks where there are many
     here = [whereabouts(mission, robot) for robot in range(mission.scenario.num_robots)]
@@ -131,7 +131,7 @@ def _draw_tasks(canvas: Canvas, frame: _Frame, mission: Mission, detail: float) 
         else:
             canvas.cross(place, 4.2 * detail, MISSED, 2.2 * detail)
         if numbered:
-            name = fitted(scenario.task_name(task), str(task), 13, _LONGEST_NAME)
+            name = fitted(scenario.task_name(task), str(task), 13, _LONGEST_NAME, scenario.task_names)
             left = place[0] + 6 + text_width(name, 13) > _PANEL_LEFT  # or it would run into the column beside the map
             canvas.text(name, (place[0] - 6 if left else place[0] + 6, place[1] - 8), 13, FAINT, align=float(left))
 

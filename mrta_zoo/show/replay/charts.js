@@ -97,15 +97,21 @@ class Gantt extends Chart {
 
   /** Room for the names of robots. */
   left() {
-    const widest = Math.max(...place.robot_names.map((name) => textWidth(many ? "999" : name, TEXT)));
-    return Math.min(widest + 8, Math.max(78, 0.16 * this.box.clientWidth));
+    const widest = Math.max(...place.robot_names.map((name, robot) => textWidth(many ? "999" : `${this.number(robot)}${name}`, TEXT)));
+    return Math.min(widest + 8, Math.max(78, 0.18 * this.box.clientWidth));
+  }
+
+  /** What stands before a robot's name: its number, which it has on the map. */
+  number(robot) {
+    return place.named ? `${robot}: ` : "";
   }
 
   fill() {
     this.picked = this.inner.appendChild(svg("rect", { class: "picked", visibility: "hidden" }));
     this.visits = new Map();
     this.routes.forEach((route, robot) => {
-      const name = many ? `${robot}` : fitted(place.robot_names[robot], this.left() - 8, TEXT);
+      const room = this.left() - 8 - textWidth(this.number(robot), TEXT);
+      const name = many ? `${robot}` : this.number(robot) + fitted(place.robot_names[robot], room, TEXT, place.robot_names);
       this.svg.append(svg("text", { class: "who", x: this.left() - 6, y: ABOVE + this.rows[robot].bar + BAR / 2 + 4,
         fill: robotColour(robot), "data-robot": robot }, name));
       for (const visit of [...route].reverse()) this.inner.append(this.visit(robot, visit)); // bars on the ways from them
@@ -136,7 +142,8 @@ class Gantt extends Chart {
 
   /** The name of a task in its bar, upright or on its side, if there is room for it. */
   name(name, x, y, room) {
-    const upright = fitted(name, room, TEXT - 1), turned = room >= 7 && upright !== name ? fitted(name, BAR - 2, TEXT - 1) : "";
+    const fit = (room) => fitted(name, room, TEXT - 1, place.task_names);
+    const upright = fit(room), turned = room >= 7 && upright !== name ? fit(BAR - 2) : "";
     const side = turned.length > upright.length;
     if (!upright && !turned) return [];
     return [svg("text", { class: "what", x, y: y + 3.5, ...(side && { transform: `rotate(-90 ${x} ${y})` }) },

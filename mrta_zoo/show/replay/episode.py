@@ -15,7 +15,7 @@ from mrta_zoo.mission import Mission
 from mrta_zoo.rules import MaskReason, Status
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.show.lanes import deadline_lanes
-from mrta_zoo.show.view import shown_box, shown_time
+from mrta_zoo.show.view import Digits, shown_box, shown_time
 from mrta_zoo.trace import Choice, Trace
 from mrta_zoo.verify import verify
 
@@ -132,6 +132,10 @@ class Place(msgspec.Struct, frozen=True):
     """What people call each: its name, or its number."""
     robot_names: list[str]
     """Likewise: its name, or "robot" and its number."""
+    named: bool
+    """Whether robots have names, so that their numbers on the map are to be explained."""
+    digits: tuple[int, int]
+    """After the point, of times and of distances."""
 
 
 def place_of(scenario: Scenario, makespan: float) -> Place:
@@ -143,6 +147,7 @@ def place_of(scenario: Scenario, makespan: float) -> Place:
     """
     low, size = shown_box(scenario)
     tasks = np.column_stack((scenario.task_xy, scenario.deadline, scenario.workload))
+    digits = Digits.of(scenario)
     robots = np.column_stack((scenario.robot_xy, scenario.capacity, scenario.speed))
     return Place(
         name=scenario.name,
@@ -154,6 +159,8 @@ def place_of(scenario: Scenario, makespan: float) -> Place:
         robots=robots.tolist(),
         task_names=[scenario.task_name(task) for task in range(scenario.num_tasks)],
         robot_names=[scenario.robot_name(robot) for robot in range(scenario.num_robots)],
+        named=bool(scenario.robot_names),
+        digits=(digits.of_times, digits.of_distances),
     )
 
 

@@ -13,8 +13,11 @@ const byId = (id) => document.getElementById(id);
 const counted = (count, noun) => `${count} ${noun}${count === 1 ? "" : "s"}`;
 const robotColour = (robot) => colours.robots[robot % colours.robots.length];
 const { horizon, end } = place;
-const digits = Math.max(0, Math.min(6, 3 - Math.floor(Math.log10(end))));
-const number = (value) => value.toFixed(digits);
+const written = (value, digits) => { // what is next to nothing is not nothing
+  const text = value.toFixed(digits);
+  return value === 0 || /[1-9]/.test(text) ? text : `${Number(value.toPrecision(1))}`;
+};
+const number = (time) => written(time, place.digits[0]), far = (distance) => written(distance, place.digits[1]);
 const many = place.robots.length > MANY_ROBOTS;
 
 function element(tag, text = "", attributes = {}) {

@@ -57,7 +57,7 @@ class MapView {
       [place.low[axis], place.low[axis] + place.size[axis]]);
     this.ground.replaceChildren(svg("rect", { x: -MARGIN, y: -MARGIN, width: width + 2 * MARGIN,
       height: height + 2 * MARGIN, fill: colours.ground }));
-    const wide = Math.max(...[left, right].map((value) => textWidth(`${Math.round(value)}`, AXIS.size))) + 16;
+    const wide = this.widestAcross() + 16;
     const about = (length, room) => Math.max(1, Math.min(5, Math.floor(length / px / room)));
     for (const value of roundNumbers(left, right, about(width, wide))) {
       const [x] = this.at([value, low]);
@@ -71,6 +71,12 @@ class MapView {
     }
   }
 
+  /** The width of the widest number below the map. */
+  widestAcross() {
+    const numbers = roundNumbers(place.low[0], place.low[0] + place.size[0], 5);
+    return Math.max(...numbers.map((value) => textWidth(`${value}`, AXIS.size)));
+  }
+
   /** The numbers at the left. */
   upNumbers() {
     return roundNumbers(place.low[1], place.low[1] + place.size[1], place.size[1] < place.size[0] / 2 ? 2 : 5);
@@ -82,7 +88,7 @@ class MapView {
     const px = this.perPixel, size = LABEL.size, spots = place.tasks.map((task) => this.at(task).map((each) => each / px));
     const homes = place.robots.map((robot) => this.at(robot).map((each) => each / px));
     const box = (side) => ([x, y]) => [x - side, y - side, x + side, y + side];
-    const names = place.task_names.map((name) => fitted(name, LABEL.longest, size));
+    const names = place.task_names.map((name) => fitted(name, LABEL.longest, size, place.task_names));
     const radius = (6.5 * this.detail) / px;
     const frame = [-MARGIN, -MARGIN, this.size[0] + 2 * MARGIN, this.size[1] + 2 * MARGIN].map((each) => each / px);
     const found = placesOfLabels(spots, names, size, radius + 0.5, [...spots.map(box(radius)), ...homes.map(box(5 / px))],
@@ -151,7 +157,7 @@ class MapView {
     this.width = this.box.clientWidth;
     const high = this.svg.clientHeight || 1, [width, height] = this.size.map((each) => each + 2 * MARGIN);
     const beside = Math.max(...this.upNumbers().map((value) => textWidth(`${value}`, AXIS.size))) + 8;
-    const beyond = textWidth(`${Math.round(place.low[0] + place.size[0])}`, AXIS.size) / 2;
+    const beyond = this.widestAcross() / 2;
     const px = Math.max(width / Math.max(this.width - beside - beyond, 10), height / Math.max(high - AXIS.below, 10));
     const spare = (this.width * px - width - (beside + beyond) * px) / 2;
     this.show([-MARGIN - beside * px - spare, -MARGIN, this.width * px, high * px]);

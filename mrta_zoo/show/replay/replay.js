@@ -1,6 +1,7 @@
 "use strict";
 // The sides of the page, and the moment that they show.
 const REASONS = ["to choose from", "taken", "deadline passed", "too late"]; // by rules.MaskReason
+const GAP = 14, NAMES = 0.4; // around names and notes, in pixels; what names get of the room for both at least, as a share
 const WHOLE_PLAY = 40; // seconds that an episode takes at speed 1
 
 // The moment shown: a time and, for each side, the last decision made by then. Of several made at the same time, those
@@ -27,6 +28,7 @@ class Side {
       candidates.every((candidate) => candidate[5] === null)));
     const longest = Math.max(0, ...episode.decisions.map(({ candidates }) => candidates.length));
     this.decision.style.setProperty("--rows", longest); // so that nothing below moves from one decision to the next
+    new ResizeObserver(() => { if (this.width !== this.decision.clientWidth) this.fitNames(); }).observe(this.decision);
     this.map = new MapView(part("map"), (task) => look(index, task));
     this.gantt = new Gantt(part("gantt"), episode.routes, (decision) => pick(index, decision), (task) => look(index, task));
     this.strip(byId("time").appendChild(element("div", "", { class: "strip", id: `strip-${index}` })));
@@ -68,8 +70,8 @@ class Side {
     const advice = decision.advice === null ? "" :
       `; the policy would have taken task ${place.task_names[decision.advice]}`;
     const table = element("table"), head = element("tr"), body = element("tbody");
-    const columns = { task: "", probability: "words likely", distance: "wide", finish: "", due: "wide", slack: "",
-      "": "words" };
+    const columns = { task: "name", probability: "words likely", distance: "wide", finish: "", due: "wide", slack: "",
+      "": "words note" };
     for (const [name, kind] of Object.entries(columns)) head.append(element("th", name, { class: kind }));
     body.append(...decision.candidates.map((candidate) => this.row(candidate, decision)));
     table.append(head, body);
@@ -81,6 +83,26 @@ class Side {
         `; ${decision.candidates.length} of them listed`, { class: "faint" }),
       table,
     );
+    this.fitNames();
+  }
+
+  /** Names and notes share the room that numbers leave, and names that lack room are shortened. */
+  fitNames() {
+    this.width = this.decision.clientWidth;
+    const rows = [...this.decision.querySelectorAll("tbody tr")], head = this.decision.querySelector("tr");
+    if (rows.length === 0) return;
+    const texts = [".name", ".note"].map((part) => rows.map((row) => row.querySelector(part)));
+    const size = parseFloat(getComputedStyle(texts[0][0]).fontSize), bold = 1.1; // of what is chosen
+    const longest = texts.map((cells, part) => bold * Math.max(...cells.map((cell) =>
+      textWidth(part ? cell.textContent : cell.title, size))));
+    const widths = (cells) => cells.map((cell) => cell.getBoundingClientRect().width).reduce((sum, width) => sum + width, 0);
+    for (const cell of texts[0]) cell.textContent = "";
+    this.decision.classList.add("numbers");
+    const others = [...head.children].filter((cell) => !cell.matches(".name, .note"));
+    const rest = this.width - widths(others) - 2 * GAP;
+    this.decision.classList.remove("numbers");
+    const room = Math.max(Math.min(longest[0], Math.max(NAMES * rest, rest - longest[1])), head.firstChild.textContent.length);
+    for (const cell of texts[0]) cell.textContent = fitted(cell.title, room / bold, size, place.task_names) || "…";
   }
 
   row([task, distance, finish, reason, note, probability, percent], decision) {
@@ -92,10 +114,10 @@ class Side {
       likely.textContent = `${percent} %`;
       likely.style.setProperty("--share", `${100 * probability}%`);
     }
-    const name = place.task_names[task], cells = [[fitted(name, 170, 13), ""], null, [number(distance), "wide"],
+    const name = place.task_names[task], cells = [["", "name"], null, [far(distance), "wide"],
       [number(finish), ""], [number(due), "wide"], [number(due - finish), ""], [notes, "words note"]];
     row.append(...cells.map((cell) => cell === null ? likely : element("td", cell[0], { class: cell[1] })));
-    row.firstChild.title = name; // in case it is shortened
+    row.firstChild.title = name; // shortened by fitNames
     row.addEventListener("mouseenter", () => look(this.index, task));
     row.addEventListener("mouseleave", () => look(this.index, null));
     return row;
