@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import csv
 import io
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import tyro
 
-from mrta_zoo.errors import ConfigError, MrtaError
+from mrta_zoo.cli.flags import run
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.destination import check_destination, check_distinct
 from mrta_zoo.io.paths import as_spelt
 from mrta_zoo.io.source import check_name, read_text
@@ -100,8 +100,10 @@ def main(
         by: what goes along: episodes sampled, or updates.
 
     Raises:
-        ConfigError: if a run has no history, or the picture cannot be written.
+        ConfigError: if there is no run, one has no history, or the picture cannot be written.
     """
+    if not runs:
+        raise ConfigError("no run is given; expected folders of runs, or copies of their history.csv")
     check_destination(out)
     check_format(out)
     check_distinct({"--out": out}, {f"the run {run}": run for run in runs})
@@ -109,8 +111,4 @@ def main(
 
 
 if __name__ == "__main__":
-    try:
-        tyro.cli(main)
-    except MrtaError as error:
-        print(f"error: {error}", file=sys.stderr)
-        sys.exit(2)
+    run(main, "mrta_zoo.eval.plot_history")

@@ -31,7 +31,7 @@ class SolverOptions:
         decode: how learned methods choose: "greedy", the likeliest task each time; "sample", the best of several drawn
             missions and the greedy one; "augment", the best of the greedy ones with the map seen in each of its 8
             symmetries and, with a budget, of missions drawn so; "beam", the best that beam search finishes. None is
-            "sample" if there is a budget, else "greedy".
+            "sample" if there is a budget or a number of samples, else "greedy".
         samples: missions that "sample" (and "augment" with a budget) draws in one go, or the width of the beam, from 1
             to `MAX_SAMPLES`; None is `DEFAULT_SAMPLES`.
         budget: seconds a scenario that methods which search may take, > 0; None leaves it to the method.
@@ -54,7 +54,7 @@ class SolverOptions:
     def __post_init__(self) -> None:
         check_seed(self.seed)
         if self.decode is None:
-            object.__setattr__(self, "decode", "greedy" if self.budget is None else "sample")
+            object.__setattr__(self, "decode", "greedy" if self.budget is None and self.samples is None else "sample")
         if self.decode not in get_args(Decode):
             raise ConfigError(f"decode is {self.decode!r}; expected one of {', '.join(get_args(Decode))}")
         if self.samples is not None and not 1 <= self.samples <= MAX_SAMPLES:

@@ -37,11 +37,13 @@ class Method:
     Attributes:
         summary: what it does, in a few words.
         make: the solver, given the options.
+        uses: those of the options that may be left out, of which it makes something.
         extra: the extra of the package that it needs, one of `extras.EXTRAS`.
     """
 
     summary: str
     make: Callable[[SolverOptions], Solver]
+    uses: frozenset[str] = frozenset()
     extra: str | None = None
 
 
@@ -134,38 +136,47 @@ def _exact(options: SolverOptions) -> Solver:
     return ExactSolver(budget=options.budget or BUDGET)
 
 
+_RULE, _BUDGET = frozenset({"mask_rule"}), frozenset({"budget"})
+_LEARNED = frozenset({"decode", "samples", "budget", "mask_rule"})
+
 METHODS: dict[str, Method] = {
     "random": Method(
         "any feasible task, drawn evenly",
         lambda options: PolicySolver(lambda: RandomPolicy(options.seed), options, "random"),
+        uses=_RULE,
     ),
     "nearest": Method(
         "the nearest feasible task",
         lambda options: PolicySolver(NearestPolicy, options, "nearest"),
+        uses=_RULE,
     ),
     "edf": Method(
         "the feasible task with the earliest deadline",
         lambda options: PolicySolver(EarliestDeadlinePolicy, options, "edf"),
+        uses=_RULE,
     ),
     "big-mrta": Method(
         "a maximum-weight matching of robots and tasks at each decision",
         lambda options: BigMrtaSolver(),
         extra="solvers",
     ),
-    "ils": Method("iterated local search (Vansteenwegen et al. 2009), compiled", _ils, extra="solvers"),
+    "ils": Method("iterated local search (Vansteenwegen et al. 2009), compiled", _ils, _BUDGET, extra="solvers"),
     "eils": Method(
         "local search in the spirit of EILS (details unknown): removes and refills strings of visits",
         _eils,
+        _BUDGET,
         extra="solvers",
     ),
     "exact": Method(
         "as many tasks as possible, proven; for small missions",
         _exact,
+        _BUDGET,
         extra="solvers",
     ),
     "pyvrp": Method(
         "the routing solver PyVRP, which searches until the budget ends or nothing more comes",
         lambda options: PyVrpSolver(seed=options.seed, budget=options.budget or PYVRP_BUDGET),
+        _BUDGET,
         extra="pyvrp",
     ),
 }
@@ -179,6 +190,13 @@ POLISH = "+polish"
 def method_names() -> list[str]:
     """What `make_solver` knows by name: `METHODS`, then the trained policies that ship with the package."""
     return [*METHODS, *pretrained_names()]
+
+
+def used_options(name: str) -> frozenset[str]:
+    """Those of the options that may be left out, of which the method of that name makes something."""
+    if name.endswith(POLISH):
+        return used_options(name.removesuffix(POLISH)) | _BUDGET
+    return METHODS[name].uses if name in METHODS else _LEARNED
 
 
 def make_solver(
@@ -210,7 +228,7 @@ def make_solver(
     polished = name.endswith(POLISH)
     options = SolverOptions(
         seed=seed,
-        decode="greedy" if polished and decode is None else decode,
+        decode="greedy" if polished and decode is None and samples is None else decode,
         samples=samples,
         budget=budget,
         mask_rule=mask_rule,

@@ -30,3 +30,14 @@ def refused(capsys: Captured, arguments: list[str]) -> str:
     assert output.out == ""
     assert "Traceback" not in output.err
     return output.err
+
+
+def changed(arguments: list[str], *flags: str) -> list[str]:
+    """The arguments with other values: flags, each followed by its value, that take the place of those given before."""
+    others = list(arguments)
+    for flag, value in zip(flags[::2], flags[1::2], strict=True):
+        if flag in others:
+            others[others.index(flag) + 1] = value
+        else:
+            others += [flag, value]
+    return others

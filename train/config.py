@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Literal, get_args
 
-from mrta_zoo.bounds import check_seed
+from mrta_zoo.bounds import MOST, check_seed
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.sharing import USUAL_KINDS, Sharing, check_kinds
@@ -132,6 +132,9 @@ class TrainConfig:
         for name in whole:
             if getattr(self, name) < 1:
                 raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 1")
+        for name in ("scenarios", "samples", "validation_scenarios", "imitation_batch"):
+            if getattr(self, name) > MOST:  # whose memory would run out, sooner or later
+                raise ConfigError(f"{name} is {getattr(self, name)}; expected at most {MOST}")
         if not self.tasks or min(self.tasks) < 1:
             raise ConfigError(f"tasks is {self.tasks}; expected one or more whole numbers >= 1")
         weights = self.task_weights

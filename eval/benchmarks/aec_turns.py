@@ -9,7 +9,6 @@ both alike; the ratio is what to compare between machines.
 
 from __future__ import annotations
 
-import argparse
 import os
 import time
 from typing import Any
@@ -17,6 +16,8 @@ from typing import Any
 import numpy as np
 
 from mrta_zoo import mrta_v0
+from mrta_zoo.cli.flags import run
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator
 
 
@@ -61,17 +62,24 @@ def measure(turns: int, rounds: int) -> dict[str, float]:
     return best
 
 
-def main() -> None:
-    """Measure and print."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--turns", type=int, default=5000, help="turns in a round")
-    parser.add_argument("--rounds", type=int, default=5, help="rounds; the best counts")
-    arguments = parser.parse_args()
+def main(turns: int = 5000, rounds: int = 5) -> None:
+    """AEC turns a second, beside PettingZoo's tic-tac-toe in the same run.
+
+    Args:
+        turns: in a round.
+        rounds: of which the best counts.
+
+    Raises:
+        ConfigError: if there is not one of each.
+    """
+    for name, value in {"turns": turns, "rounds": rounds}.items():
+        if value < 1:
+            raise ConfigError(f"{name} is {value}; expected a whole number >= 1")
     load = os.getloadavg()[0]
-    for name, value in measure(arguments.turns, arguments.rounds).items():
-        print(f"{name:>14}  {value:10.2f}" + ("" if name == "ratio" else " turns/s"))
+    for name, best in measure(turns, rounds).items():
+        print(f"{name:>14}  {best:10.2f}" + ("" if name == "ratio" else " turns/s"))
     print(f"100 tasks, 7 robots; load average at the start {load:.2f}")
 
 
 if __name__ == "__main__":
-    main()
+    run(main, "mrta_zoo.eval.benchmarks.aec_turns")

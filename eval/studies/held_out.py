@@ -15,6 +15,8 @@ Distribution = Literal["taptc", "uniform"]
 
 HELD_OUT_SEED = 20220526
 """Of a stream of random numbers that training, whose seeds are small, has nothing to do with."""
+MOST = 10_000
+"""More would take much memory, and tell nothing."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,8 +34,8 @@ class HeldOut:
     robots: tuple[int, ...]
 
     def __post_init__(self) -> None:
-        if self.count < 2:
-            raise ConfigError(f"held_out is {self.count}; expected at least 2 scenarios for each number of robots")
+        if not 2 <= self.count <= MOST:
+            raise ConfigError(f"held_out is {self.count}; expected 2 to {MOST:,} scenarios for each number of robots")
 
     def scenarios(self, distribution: Distribution, robots: int) -> list[Scenario]:
         """Those of a distribution with so many robots, the first ones the same whatever the count."""

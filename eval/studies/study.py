@@ -18,7 +18,7 @@ from mrta_zoo.eval.studies.rows import RunRow
 from mrta_zoo.io.records import write_records
 from mrta_zoo.policies.cpu_threads import cpu_threads
 
-MAX_WORKERS = 1024
+MAX_SEEDS, MAX_WORKERS = 1000, 1024
 
 
 def check_counts(seeds: int, workers: int) -> None:
@@ -27,8 +27,8 @@ def check_counts(seeds: int, workers: int) -> None:
     Raises:
         ConfigError: if not.
     """
-    if seeds < 1:
-        raise ConfigError(f"seeds is {seeds}; expected a whole number >= 1")
+    if not 1 <= seeds <= MAX_SEEDS:
+        raise ConfigError(f"seeds is {seeds}; expected a whole number from 1 to {MAX_SEEDS}")
     if not 1 <= workers <= MAX_WORKERS:
         raise ConfigError(f"workers is {workers}; expected a whole number from 1 to {MAX_WORKERS}")
 

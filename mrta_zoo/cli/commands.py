@@ -12,6 +12,7 @@ from typing import Annotated
 from tyro.conf import Positional, arg
 
 from mrta_zoo.cli.flags import names, optional, parse
+from mrta_zoo.cli.plan_files import is_episode
 from mrta_zoo.cli.solved_files import write_schedule, write_solved
 from mrta_zoo.digits import rounded
 from mrta_zoo.errors import ScenarioError
@@ -30,7 +31,7 @@ from mrta_zoo.policies.neural.policy_files import info_file, weights_file
 from mrta_zoo.policies.options import Decode
 from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.protocol import Solver
-from mrta_zoo.policies.registry import METHODS, POLISH, make_solver, method_names
+from mrta_zoo.policies.registry import METHODS, POLISH, make_solver, method_names, used_options
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.show.plan.text import missed, proven, schedule_table, totals
 from mrta_zoo.show.terminal.console import preparing, progress_bar, results_console, say, warn
@@ -59,8 +60,8 @@ class PlanningFlags:
     decode: Annotated[Decode | None, optional("{greedy,sample,augment,beam}")] = None
     """How learned methods choose: greedy takes the likeliest task each time; sample takes the best of several drawn
     missions and the greedy one; augment the best of 8 greedy ones, the map mirrored and turned, and with --budget of
-    more drawn so; beam the best of a beam search, with --budget wider and wider. By default sample if --budget is
-    given, otherwise greedy."""
+    more drawn so; beam the best of a beam search, with --budget wider and wider. By default sample if --budget or
+    --samples is given, otherwise greedy."""
     samples: Annotated[int | None, optional("N")] = None
     """Missions that sample draws in one go, 64 by default; with --budget it goes on drawing. For beam its width, 16 by
     default."""
@@ -76,6 +77,20 @@ class PlanningFlags:
     threads: int = 1
     """CPU threads for learned methods: one is as fast as several for single missions, and timings compare. For eils
     and +polish with --budget, as many searches at a time, of which the best counts."""
+
+    def warn_unused(self, methods: Sequence[str], *used: str) -> None:
+        """Say on standard error which of these flags have no effect.
+
+        Args:
+            methods: that are to plan, or files of plans and traces.
+            used: options that the command itself makes something of.
+        """
+        known = frozenset(used).union(*(used_options(name) for name in methods if not is_episode(name)))
+        if self.decode == "greedy" or (self.decode == "augment" and self.budget is None):
+            known -= {"samples"}
+        for option in ("decode", "samples", "budget", "mask_rule"):
+            if getattr(self, option) is not None and option not in known:
+                warn(f"{' and '.join(methods)} make{'s' * (len(methods) == 1)} nothing of --{option.replace('_', '-')}")
 
     def solver(self, method: str) -> Solver:
         """The method, made with these flags."""
@@ -134,11 +149,12 @@ def solve_command(argv: Sequence[str]) -> None:
         check_format(command.plot)
     destinations = {"--out": command.out, "--schedule": command.schedule, "--plot": command.plot}
     read = {"the task file": command.taskfile, "the agent file": agent_file(command.taskfile, command.agents)}
-    method = command.method or chosen_method(command.planning)
+    method = chosen_method(command.planning) if command.method is None else command.method
     check_distinct(destinations, {**read, **policy_files(method)})
     scenario = read_scenario(command.taskfile, command.agents)
     with preparing():
         solver = command.planning.solver(method)
+    command.planning.warn_unused([method])
     with cpu_threads(command.planning.threads):
         solved = solve_and_score(solver, scenario)
     with Outputs() as outputs:
@@ -234,6 +250,7 @@ def eval_command(argv: Sequence[str]) -> None:
         check_distinct({"--out": command.out}, inputs)
     with preparing():
         solvers = {method: command.planning.solver(method) for method in methods}
+    command.planning.warn_unused(methods)
     cases = builtin_cases() if command.cases == BUILTIN else read_cases(command.cases, warn)
     with cpu_threads(command.planning.threads):
         rows = run_with_progress(cases, solvers)

@@ -93,6 +93,7 @@ def compare_command(argv: Sequence[str]) -> None:
     ):
         first, second = (_advisor(scenario, name, command.planning) for name in both)
         found = compare(scenario, first, second)
+    command.planning.warn_unused(both, "mask_rule")
     with Outputs() as outputs:
         if command.out:
             outputs.write("comparison", command.out, lambda path: write_comparison(found, both, path))

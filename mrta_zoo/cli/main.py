@@ -16,7 +16,7 @@ from mrta_zoo.cli.streams import fit_streams
 from mrta_zoo.errors import ConfigError, MrtaError
 from mrta_zoo.extras import require
 from mrta_zoo.io.paths import check_no_url
-from mrta_zoo.show.terminal.fold import spelt_out
+from mrta_zoo.show.terminal.fold import fold, help_width, spelt_out
 from mrta_zoo.wording import is_utf8
 
 Command = Callable[[list[str]], None]
@@ -210,9 +210,9 @@ def _check(argument: str) -> None:
 
 
 def _help() -> str:
-    width = max(map(len, COMMANDS))
-    commands = "\n".join(f"  {name:<{width}}  {summary}" for name, (summary, _) in COMMANDS.items())
-    return (
+    column = max(map(len, COMMANDS)) + 2
+    commands = "\n".join(f"  {name:<{column}}{summary}" for name, (summary, _) in COMMANDS.items())
+    text = (
         "usage: mrta-zoo COMMAND [options]\n\n"
         "Multi-robot task allocation: robots share tasks that have places, workloads and deadlines.\n\n"
         f"commands:\n{commands}\n\n"
@@ -223,6 +223,8 @@ def _help() -> str:
         "  mrta-zoo generate --count 3 --out cases\n"
         "  mrta-zoo solve cases/group1/taptc0.txt --method nearest --plot plan.png"
     )
+    indent = " " * (column + 2)
+    return "\n".join(each for line in text.split("\n") for each in fold(line, help_width(), indent * (line[:1] == " ")))
 
 
 def _complain(sentence: str) -> int:

@@ -89,6 +89,7 @@ def replay_command(argv: Sequence[str]) -> None:
     scenario, given = _source(command, kind)
     with preparing("plays the episodes"), cpu_threads(command.planning.threads):
         traces = [*given, *(_episode(scenario, name, command.planning) for name in chosen)]
+    command.planning.warn_unused([*chosen, *[str(command.source)] * (kind in (PLAN, TRACE))], "mask_rule")
     with Outputs() as outputs:
         outputs.write("page", command.out, lambda path: write_replay(traces, path))
     shown = " and ".join(trace.method or "an unnamed method" for trace in traces)

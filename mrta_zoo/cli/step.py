@@ -82,6 +82,8 @@ def step_command(argv: Sequence[str]) -> None:
         MrtaError: if an option cannot be used, a file cannot be read or written, or a command of a script fails.
     """
     command = parse(Step, argv, "step")
+    if command.scenario is None and command.agents is not None:
+        raise ConfigError("--agents is given without a scenario; expected SCENARIO --agents AGENTFILE")
     script = _script(command)
     if command.session:
         check_destination(command.session)
@@ -136,10 +138,17 @@ def _begin(command: Step) -> Session:
                 f"{command.session} is there already, a session on {resumed.scenario.name or 'another mission'}, "
                 f"which is not {command.scenario}; leave out the scenario to go on with it, or name another file"
             )
+        if command.planning.mask_rule not in (None, resumed.mask_rule):
+            raise ConfigError(
+                f"--mask-rule is {command.planning.mask_rule}, but {command.session} is a session with the mask rule "
+                f"{resumed.mask_rule}; leave it out to go on with it, or name another file"
+            )
     with preparing():
         if resumed is None:
             scenario = _scenario(command)
-            advisor = _advisor(scenario, command.policy or DEFAULT, command.planning)
+            policy = DEFAULT if command.policy is None else command.policy
+            advisor = _advisor(scenario, policy, command.planning)
+            command.planning.warn_unused([policy], "mask_rule")
             rule = {"mask_rule": command.planning.mask_rule} if command.planning.mask_rule else {}
             return Session(Stepper(scenario, advisor, **rule), advisor, command.session)
         advisor = _advisor_again(resumed, command.policy, command.planning)
@@ -149,8 +158,6 @@ def _begin(command: Step) -> Session:
 def _scenario(command: Step) -> Scenario:
     if command.scenario is not None:
         return read_scenario(command.scenario, command.agents)
-    if command.agents is not None:
-        raise ConfigError("--agents is given without a scenario; expected SCENARIO --agents AGENTFILE")
     seed = command.planning.seed
     return TaptcGenerator()(np.random.default_rng(seed), f"drawn with seed {seed}")
 

@@ -1,4 +1,4 @@
-"""Files that are replaced whole or not at all."""
+"""Files that are replaced whole or not at all, wherever the system can do that."""
 
 from __future__ import annotations
 
@@ -26,9 +26,12 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
 
     Readers see the old file or the new one, never half of it, also if the process is killed or others write the same
     file. If anything is raised, what was there stays untouched. Links are followed: the file that they lead to is the
-    one replaced, and the new one has its owner and permissions. A file that only another place can be written for, as
-    it is mounted by itself, has a second name, or is in a folder that may not be written to, gets the finished text in
-    place. A device or pipe, such as ``/dev/stdout``, must not be replaced: its own path is yielded.
+    one replaced, and the new one has its owner and permissions.
+
+    Two kinds of files cannot be replaced. One that is mounted by itself, has a second name, belongs to somebody else or
+    is in a folder that may not be written to is written in place, by one writer at a time. What was there is put back
+    if anything is raised; but readers may meanwhile see half of it, and so it stays if the process is killed. A device
+    or pipe, such as ``/dev/stdout``, is simply written to: its own path is yielded.
 
     >>> with replacing("plan.json") as partial:
     ...     partial.write_text("{}")

@@ -37,7 +37,7 @@ def write_scenario(scenario: Scenario, path: StrPath) -> None:
     """Write a scenario exactly, as the suffix says: ``.json``, ``.csv`` or, for TAPTC, ``.txt``.
 
     A TAPTC task file gets its agent file in the folder ``agent`` beside it, under the same name. CSV and
-    TAPTC hold no scenario name; the file's is taken when read. A file is replaced whole or not at all.
+    TAPTC hold no scenario name; the file's is taken when read. Files are written through `atomic.replacing`.
 
     Raises:
         ScenarioError: if the format cannot express the scenario or the file cannot be written.

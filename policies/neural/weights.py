@@ -63,7 +63,7 @@ class PolicyInfo:
 
 
 def save_policy(path: Path, network: Network, info: PolicyInfo) -> None:
-    """Write `path` (….safetensors) and the JSON beside it, each atomically.
+    """Write `path` (….safetensors) and the JSON beside it, each through `replacing`.
 
     Raises:
         ConfigError: if `path` is a URL.
@@ -117,7 +117,7 @@ def build_with(tensors: dict[str, torch.Tensor], info: PolicyInfo, path: Path) -
 
 
 def write_tensors(path: Path, tensors: dict[str, torch.Tensor]) -> None:
-    """Write tensors to a safetensors file, atomically."""
+    """Write tensors to a safetensors file, through `replacing`."""
     with replacing(path) as partial:
         # Not `save_file`, which makes files that only their owner can read.
         partial.write_bytes(save({name: tensor.detach().cpu().contiguous() for name, tensor in tensors.items()}))
@@ -138,7 +138,7 @@ def read_tensors(path: Path) -> dict[str, torch.Tensor]:
 
 
 def write_json(path: Path, value: Any) -> None:
-    """Write a dataclass as indented JSON, atomically."""
+    """Write a dataclass as indented JSON, through `replacing`."""
     with replacing(path) as partial:
         partial.write_text(json.dumps(msgspec.to_builtins(value), indent=2) + "\n", encoding="utf-8")
 

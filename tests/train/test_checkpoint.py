@@ -72,7 +72,7 @@ def test_killed_run_resumes_to_the_same_bits(tmp_path: Path) -> None:
     train_command([*arguments, "--out", str(tmp_path / "straight")])
 
     killed = tmp_path / "killed"
-    command = [sys.executable, "-m", "mrta_zoo.cli.train", *arguments, "--out", str(killed)]
+    command = [sys.executable, "-m", "mrta_zoo", "train", *arguments, "--out", str(killed)]
     process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
     try:
         until = time.monotonic() + 60

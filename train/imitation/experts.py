@@ -70,7 +70,7 @@ def shard_path(folder: Path, first: int) -> Path:
 
 
 def make_shard(config: TrainConfig, first: int, folder: Path) -> Path:
-    """Plan `SHARD` scenarios, from number `first` on, and write them to a file, atomically.
+    """Plan `SHARD` scenarios, from number `first` on, and write them to a file, through `replacing`.
 
     Needs the extra `solvers`.
     """

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import shutil
 import textwrap
+
+NARROWEST, WIDEST = 40, 100
+"""Columns between which help is easy to read; it has those of the terminal within these bounds."""
 
 JOINERS = "\u200c\u200d\u200e\u200f"
 """Characters without a shape of their own that writing needs: joiners of letters or emoji, and marks of direction."""
@@ -25,6 +29,11 @@ def fold(text: str, width: int, indent: str = "") -> list[str]:
         text, max(width, 1), subsequent_indent=indent, replace_whitespace=False, break_long_words=False,
         break_on_hyphens=False,
     ) or [""]  # fmt: skip
+
+
+def help_width() -> int:
+    """Columns for help."""
+    return min(max(shutil.get_terminal_size().columns, NARROWEST), WIDEST)
 
 
 def clipped(text: str, width: int) -> str:

@@ -46,7 +46,8 @@ def run(cases: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def arguments(cases: Path, out: Path, *more: str) -> list[str]:
-    return ["reproduce", "--cases", f"{cases}/r2,{cases}/r3", "--methods", METHODS, "--out", str(out), *more]
+    usual = {"--cases": f"{cases}/r2,{cases}/r3", "--methods": METHODS, "--out": str(out)}
+    return ["reproduce", *(word for flag in usual if flag not in more for word in (flag, usual[flag])), *more]
 
 
 def lines(path: Path) -> list[dict[str, str]]:
@@ -183,7 +184,7 @@ def test_wrong_flags_leave_nothing_behind(
     cases: Path, tmp_path: Path, flags: list[str], sentence: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "out"
-    assert main(["reproduce", "--cases", f"{cases}/r2", "--out", str(out), *flags]) == 2
+    assert main(arguments(cases, out, *flags)) == 2
     assert sentence in capsys.readouterr().err
     assert not out.exists()
 

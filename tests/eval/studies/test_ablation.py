@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from command_line import changed
 
 from mrta_zoo.cli.main import main
 from mrta_zoo.eval.plot_history import LearningCurve
@@ -81,7 +82,7 @@ def test_held_out_scenarios_are_none_of_those_trained_on() -> None:
 def straight(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A study that nothing interrupted, in this process."""
     out = tmp_path_factory.mktemp("ablation") / "straight"
-    assert main(["ablate", "--out", str(out), *TINY, "--workers", "1"]) == 0
+    assert main(["ablate", "--out", str(out), *changed(TINY, "--workers", "1")]) == 0
     return out
 
 
@@ -131,7 +132,7 @@ def test_a_finished_study_is_not_repeated(straight: Path, capsys: pytest.Capture
 
 def test_killed_and_resumed_in_processes_it_gives_the_same_rows(straight: Path, tmp_path: Path) -> None:
     out = tmp_path / "killed"
-    arguments = ["ablate", "--out", str(out), *TINY, "--only", "moments", "--workers", "2"]
+    arguments = ["ablate", "--out", str(out), *changed(TINY, "--only", "moments", "--workers", "2")]
     process = subprocess.Popen(
         [sys.executable, "-m", "mrta_zoo", *arguments], stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL
     )
@@ -167,10 +168,10 @@ def fails(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
 
 def test_another_study_in_the_same_folder_is_refused(straight: Path, capsys: pytest.CaptureFixture[str]) -> None:
     rows = (straight / "rows.csv").read_bytes()
-    assert "updates was 2, now it is 3" in fails(capsys, "--out", str(straight), *TINY, "--updates", "3")
-    assert "seeds was 2, now it is 1" in fails(capsys, "--out", str(straight), *TINY, "--seeds", "1")
+    assert "updates was 2, now it is 3" in fails(capsys, "--out", str(straight), *changed(TINY, "--updates", "3"))
+    assert "seeds was 2, now it is 1" in fails(capsys, "--out", str(straight), *changed(TINY, "--seeds", "1"))
     assert "only was encoder,moments, now it is moments" in fails(
-        capsys, "--out", str(straight), *TINY, "--only", "moments"
+        capsys, "--out", str(straight), *changed(TINY, "--only", "moments")
     )
     assert (straight / "rows.csv").read_bytes() == rows
 
@@ -193,7 +194,7 @@ def test_what_cannot_be_done_is_said(
 
 def test_a_failure_in_a_process_is_said_in_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
-    arguments = ["--out", str(out), *TINY, "--only", "moments", "--seeds", "1", "--workers"]
+    arguments = ["--out", str(out), *changed(TINY, "--only", "moments", "--seeds", "1"), "--workers"]
     assert main(["ablate", *arguments, "1"]) == 0
     damaged = out / "runs" / "capam-seed0"
     (damaged / "rows.csv").unlink()

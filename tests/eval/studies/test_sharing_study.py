@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from command_line import changed
 from scipy import stats
 
 from mrta_zoo.cli.main import main
@@ -135,7 +136,7 @@ def test_interrupted_and_resumed_it_gives_the_same(study: Path, tmp_path: Path) 
 
 def test_one_question_and_one_seed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "one"
-    assert main(["sharing", "--out", str(out), *TINY, "--only", "decisions", "--seeds", "1"]) == 0
+    assert main(["sharing", "--out", str(out), *changed(TINY, "--only", "decisions", "--seeds", "1")]) == 0
     assert {path.name for path in (out / "runs").iterdir()} == {
         "independent-seed0", "shared-fewer-seed0", "by-capacity-fewer-seed0",
     }  # fmt: skip
@@ -147,7 +148,7 @@ def test_one_question_and_one_seed(tmp_path: Path, capsys: pytest.CaptureFixture
 def test_where_nothing_could_be_chosen_nothing_is_compared(tmp_path: Path) -> None:
     # With one task a mission no robot ever has two to choose from.
     out = tmp_path / "one task"
-    tiny = [*TINY, "--only", "episodes", "--seeds", "1", "--tasks", "1"]
+    tiny = changed(TINY, "--only", "episodes", "--seeds", "1", "--tasks", "1")
     assert main(["sharing", "--out", str(out), *tiny]) == 0
     report = (out / "report.md").read_text(encoding="utf-8")
     assert "nan" not in report

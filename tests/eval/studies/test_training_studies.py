@@ -21,9 +21,11 @@ BOTH = ("ablate", "sharing")
             (command, flags, sentence)
             for command in BOTH
             for flags, sentence in (
-                (["--seeds", "0"], "seeds is 0; expected a whole number >= 1"),
+                (["--seeds", "0"], "seeds is 0; expected a whole number from 1 to 1000"),
+                (["--seeds", "9" * 20], "expected a whole number from 1 to 1000"),
+                (["--held-out", "9" * 20], "expected 2 to 10,000 scenarios"),
                 (["--workers", "0"], "workers is 0; expected a whole number from 1 to 1024"),
-                (["--held-out", "1"], "held_out is 1; expected at least 2"),
+                (["--held-out", "1"], "held_out is 1; expected 2 to 10,000"),
                 (["--samples", "1"], "samples is 1; expected at least 2"),
                 (["--updates", "0"], "updates is 0; expected a whole number >= 1"),
             )
