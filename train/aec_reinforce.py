@@ -20,7 +20,7 @@ from mrta_zoo import mrta_v0
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.sharing import build_network
 
 
@@ -48,7 +48,7 @@ def play(env: Any, network: Any, seed: int, sampler: torch.Generator | None) -> 
             continue
         if encoding is None:
             encoding = network.encode(Tasks.of_observations([observation]))
-        log_probs = network(encoding, Moments.of_observations([observation]))[0, 0]
+        log_probs = network(encoding, DecisionStates.of_observations([observation]))[0, 0]
         if sampler is None:
             action = int(log_probs.argmax())
         else:

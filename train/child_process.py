@@ -48,19 +48,15 @@ def pool_of(
 
 
 def _begin(prepare: Callable[..., None] | None, arguments: tuple[Any, ...]) -> None:
-    obey_parent()
-    if prepare is not None:
-        prepare(*arguments)
-
-
-def obey_parent() -> None:
-    """Leave Ctrl-C to the parent alone, and end when it ends; the initialiser of a pool's processes."""
+    """Leave Ctrl-C to the parent alone, end when it ends, and prepare for work."""
     # Linux shares cores out by session: each process with one of its own gets its own share.
     if hasattr(os, "setsid"):
         os.setsid()
     else:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
+    if prepare is not None:
+        prepare(*arguments)
 
 
 def _end_with_parent() -> None:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields, is_dataclass
-from typing import Any
 
 import torch
 from torch import Tensor
@@ -12,6 +10,7 @@ from torch import Tensor
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.policies.neural.capam.inputs import Tasks
 from mrta_zoo.policies.neural.rollout import Scorer, Segment
+from mrta_zoo.policies.neural.tensor_tree import select, tree_map
 from mrta_zoo.train.precision import Precision, autocast
 
 
@@ -41,11 +40,18 @@ def accumulate_gradients(
     with autocast(scenarios.device, precision):
         encoding = network.encode(Tasks.of_batch(scenarios))
     leaves: list[tuple[Tensor, Tensor]] = []
-    cut = _cut(encoding, leaves)
+
+    def leaf(tensor: Tensor) -> Tensor:  # where the graph is cut, to hold the gradient that flows back to the encoder
+        if not tensor.requires_grad:
+            return tensor
+        leaves.append((tensor, tensor.detach().requires_grad_()))
+        return leaves[-1][1]
+
+    cut = tree_map(leaf, encoding)
     total = torch.zeros((), device=scenarios.device)
     for segment in segments:
         with autocast(scenarios.device, precision):
-            log_probs = network(cut.select(segment.scenarios), segment.moments, segment.features)
+            log_probs = network(select(cut, segment.scenarios), segment.states, segment.features)
         chosen = log_probs.gather(2, segment.actions[..., None]).squeeze(2)
         weight = advantage[segment.scenarios][:, segment.sample]
         # Where a plan takes a task that is no candidate there is nothing to learn.
@@ -61,17 +67,3 @@ def accumulate_gradients(
     used = [(of, leaf.grad) for of, leaf in leaves if leaf.grad is not None]
     torch.autograd.backward([of for of, _ in used], [gradient for _, gradient in used])
     return float(total)
-
-
-def _cut(encoding: Any, leaves: list[tuple[Tensor, Tensor]]) -> Any:
-    """The same encoding with leaves in place of the tensors that gradients flow to, which are noted beside them."""
-    if isinstance(encoding, Tensor):
-        if not encoding.requires_grad:
-            return encoding
-        leaves.append((encoding, encoding.detach().requires_grad_()))
-        return leaves[-1][1]
-    if isinstance(encoding, tuple):
-        return tuple(_cut(each, leaves) for each in encoding)
-    if is_dataclass(encoding) and not isinstance(encoding, type):
-        return type(encoding)(*(_cut(getattr(encoding, field.name), leaves) for field in fields(encoding)))
-    return encoding

@@ -30,12 +30,11 @@ from mrta_zoo.train.baselines import Baseline, build_baseline
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, most_robots, training_generator
 from mrta_zoo.train.gradients import accumulate_gradients
-from mrta_zoo.train.graphed_rollout import GraphedRollout
 from mrta_zoo.train.imitation.experts import ExpertPlan
 from mrta_zoo.train.imitation.imitator import Imitator
 from mrta_zoo.train.objective import OBJECTIVES, Objective, checked
-from mrta_zoo.train.precision import autocast
-from mrta_zoo.train.scenarios import Feed
+from mrta_zoo.train.precision import autocast, quick_attention
+from mrta_zoo.train.scenarios import Drawn, draws
 
 WARM_UP = 20
 """Gradient steps over which the step size grows to what it should be."""
@@ -138,17 +137,9 @@ class Reinforce:
         self.update = 0
         self.history: list[Validation] = []
         self._validation: ScenarioBatch | None = None
-        self._feed = Feed(config, generator, options.workers if self.device.type == "cuda" else 0)
-        # Encodings of several networks are not worth the care: they are for comparisons, not for speed.
-        graphs = self.device.type == "cuda" and config.sharing == "shared"
-        self._graphed = (
-            GraphedRollout(
-                self.network, config.samples, config.mask_rule, config.precision, self.device, config.temperature
-            )
-            if graphs
-            else None
-        )
-        self._imitator = Imitator(config, self.network, self.device, self._graphed)
+        self._workers = options.workers if self.device.type == "cuda" else 0
+        self._draws: Iterator[Drawn] = iter(())
+        self._imitator = Imitator(config, self.network, self.device)
 
     @property
     def validation_batch(self) -> ScenarioBatch:
@@ -198,20 +189,17 @@ class Reinforce:
     def _reinforce(self) -> tuple[float, int]:
         """Gradients of REINFORCE; the mean loss, and the number of decisions."""
         config, policy = self.config, tempered(self.network, self.config.temperature)
-        drawn = self._feed.take(self.update)
+        drawn = self._drawn()
         scenarios = drawn.scenarios.to(self.device)
-        if self._graphed:
-            rollout = self._graphed.sample(scenarios, drawn.seed)
-        else:
-            with autocast(self.device, config.precision):
-                rollout = roll_out(
-                    policy,
-                    scenarios,
-                    samples=config.samples,
-                    generator=torch.Generator(self.device).manual_seed(drawn.seed),
-                    mask_rule=config.mask_rule,
-                    keep_segments=True,
-                )
+        with autocast(self.device, config.precision), quick_attention(self.device):
+            rollout = roll_out(
+                policy,
+                scenarios,
+                samples=config.samples,
+                generator=torch.Generator(self.device).manual_seed(drawn.seed),
+                mask_rule=config.mask_rule,
+                keep_segments=True,
+            )
         loss = self.objective(rollout, scenarios).unflatten(0, (-1, config.samples))
         advantage = self.baseline.advantage(scenarios, loss).float()
         if config.normalise:
@@ -224,7 +212,7 @@ class Reinforce:
     def validate(self) -> Validation:
         """Greedy results now; gives the baseline its chance to change, and adds to the history."""
         scenarios = self.validation_batch
-        with autocast(self.device, self.config.precision):
+        with autocast(self.device, self.config.precision), quick_attention(self.device):
             rollout = roll_out(self.network, scenarios, mask_rule=self.config.mask_rule)
         replaced = self.update > 0 and self.baseline.end_epoch(
             self.network, scenarios, self.objective(rollout, scenarios)
@@ -270,9 +258,13 @@ class Reinforce:
         """
         self._imitator.set_plans(plans)
 
-    def close(self) -> None:
-        """End the processes that draw scenarios."""
-        self._feed.close()
+    def _drawn(self) -> Drawn:
+        """What this update is made of: what is drawn next, unless the run was resumed or an update failed."""
+        drawn = next(self._draws, None)
+        if drawn is None or drawn.update != self.update:
+            self._draws = draws(self.config, self.generator, self.update, self._workers)
+            drawn = next(self._draws)
+        return drawn
 
     def _draw(self, rng: np.random.Generator) -> Scenario:
         generator = self.generator or training_generator(self.config, draw_size(self.config, rng))

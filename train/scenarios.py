@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import multiprocessing
-from concurrent.futures import Future, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
+from collections import deque
+from collections.abc import Generator
+from concurrent.futures import Future
 from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 
 from mrta_zoo.batch import ScenarioBatch
-from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import ScenarioGenerator, draw_scenario
-from mrta_zoo.train.child_process import DIED, obey_parent
+from mrta_zoo.train.child_process import pool_of
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, team, training_generator
 
@@ -24,6 +24,7 @@ AHEAD = 4
 class Drawn:
     """What one update is made of: scenarios of one size, and the seed of what is sampled on them."""
 
+    update: int
     scenarios: ScenarioBatch
     seed: int
 
@@ -41,45 +42,29 @@ def draw(config: TrainConfig, generator: ScenarioGenerator | None, update: int) 
         max_robots=most_robots,
         mask_rule=config.mask_rule,
     )
-    return Drawn(scenarios, int(rng.integers(2**63)))
+    return Drawn(update, scenarios, int(rng.integers(2**63)))
 
 
-class Feed:
-    """Draws for one update after another.
+def draws(
+    config: TrainConfig, generator: ScenarioGenerator | None, first: int, workers: int = 0
+) -> Generator[Drawn, None, None]:
+    """What each update is made of, from number `first` on, without end.
 
     Args:
         config: the run.
         generator: draws the scenarios; None for the configuration's.
-        workers: processes that draw ahead; 0 to draw when asked.
+        first: number of an update.
+        workers: processes that draw ahead, which end when the generator is closed; 0 to draw when asked.
+
+    Raises:
+        ConfigError: if one of the processes dies.
     """
-
-    def __init__(self, config: TrainConfig, generator: ScenarioGenerator | None, workers: int = 0) -> None:
-        self._config, self._generator, self._workers = config, generator, workers
-        self._pool: ProcessPoolExecutor | None = None
-        self._ahead: dict[int, Future[Drawn]] = {}
-
-    def take(self, update: int) -> Drawn:
-        """What belongs to an update.
-
-        Raises:
-            ConfigError: if one of the processes dies.
-        """
-        if not self._workers:
-            return draw(self._config, self._generator, update)
-        if self._pool is None:
-            self._pool = ProcessPoolExecutor(self._workers, multiprocessing.get_context("spawn"), obey_parent)
-        last = min(update + AHEAD * self._workers, self._config.total_updates)
-        for number in range(update, max(last, update + 1)):  # the run may have been made longer since
-            if number not in self._ahead:
-                self._ahead[number] = self._pool.submit(draw, self._config, self._generator, number)
-        try:
-            return self._ahead.pop(update).result()
-        except BrokenProcessPool:
-            raise ConfigError(DIED) from None
-
-    def close(self) -> None:
-        """End the processes."""
-        if self._pool is not None:
-            self._pool.shutdown(wait=False, cancel_futures=True)
-            self._pool = None
-            self._ahead.clear()
+    if not workers:
+        yield from (draw(config, generator, update) for update in count(first))
+    else:
+        with pool_of(workers) as pool:
+            ahead: deque[Future[Drawn]] = deque()
+            for update in count(first):
+                ahead.append(pool.submit(draw, config, generator, update))
+                if len(ahead) > AHEAD * workers:
+                    yield ahead.popleft().result()

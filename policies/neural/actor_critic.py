@@ -10,7 +10,7 @@ from torch import Tensor, nn
 
 from mrta_zoo.env.observation import EGO_FEATURES, MISSION_FEATURES, ROBOT_FEATURES, TASK_FEATURES
 from mrta_zoo.policies.cpu_threads import few_threads
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.sharing import Network
 
 
@@ -49,8 +49,8 @@ class ActorCritic(nn.Module):
         tables, mask = observation["observation"], observation["action_mask"] > 0
         leading, rows = mask.shape[:-1], tables["tasks"].shape[-2]
         flat = {name: table.reshape(-1, *table.shape[len(leading) :]) for name, table in tables.items()}
-        moments = Moments.of_tables(flat, mask[..., :rows].reshape(-1, rows))
-        scores: Tensor = self.network(self.network.encode(Tasks.of_tables(flat)), moments).reshape(*leading, rows)
+        states = DecisionStates.of_tables(flat, mask[..., :rows].reshape(-1, rows))
+        scores: Tensor = self.network(self.network.encode(Tasks.of_tables(flat)), states).reshape(*leading, rows)
         if mask.shape[-1] > rows:  # the parallel form: the no-op, where it is allowed, is all that is
             noop = mask[..., rows:]
             scores = torch.cat((scores.masked_fill(noop, -torch.inf), torch.where(noop, 0.0, -torch.inf)), -1)

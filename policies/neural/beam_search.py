@@ -52,11 +52,11 @@ def beam_search(
             mission, log_prob = mission.select(unfinished), log_prob[unfinished]
         if len(log_prob) == 0 or time.perf_counter() >= until:
             return
-        moments = Watch(mission, len(log_prob)).moments()
-        step = network(encoding, moments, network.features(encoding, moments))[0]
+        states = Watch(mission, len(log_prob)).states()
+        step = network(encoding, states, network.features(encoding, states))[0]
         if torch.isnan(step).any():
             raise ConfigError(NOT_FINITE)
-        step = step.masked_fill(~moments.mask[0], -torch.inf)
+        step = step.masked_fill(~states.mask[0], -torch.inf)
         total, order = (log_prob[:, None] + step).flatten().sort(descending=True, stable=True)
         chosen = order[: min(width, int(torch.isfinite(total).sum()))]
         if len(chosen) == 0:

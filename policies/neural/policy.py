@@ -22,7 +22,7 @@ from mrta_zoo.io.paths import check_no_url, suffix_of
 from mrta_zoo.io.source import check_name
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.cpu_threads import few_threads
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.decoding import Decoding, best_plan
 from mrta_zoo.policies.neural.policy_files import SUFFIX, weights_file
 from mrta_zoo.policies.neural.rollout import NOT_FINITE, OutOfTimeError, roll_out
@@ -38,11 +38,11 @@ UNCHANGING_MISSION = [MISSION_FEATURES.index(name) for name in ("crossing_ratio"
 
 
 @dataclass(frozen=True, slots=True)
-class Decision:
-    """What a policy made of one observation."""
+class Preferences:
+    """What a policy makes of one observation."""
 
     action: int
-    """The task taken."""
+    """The task that it takes."""
     log_prob: float
     """Log-probability of that action."""
     probabilities: npt.NDArray[np.float32]
@@ -55,7 +55,7 @@ class NeuralPolicy:
     Args:
         network: scores the tasks.
         info: what belongs to the network.
-        name: what plans are signed with.
+        name: method name stored in plans.
         decode: how `act` chooses: drawn from the probabilities ("sample"), or the likeliest task (anything else).
         seed: of the draws.
     """
@@ -118,7 +118,7 @@ class NeuralPolicy:
 
     @few_threads()
     @torch.no_grad()
-    def decide(self, observation: Observation) -> Decision:
+    def decide(self, observation: Observation) -> Preferences:
         """The task to take, with probabilities. The encoder runs only when the tasks differ from the last call's.
 
         In the parallel form a robot that is not free takes the no-op.
@@ -132,7 +132,7 @@ class NeuralPolicy:
         tasks = len(seen["tasks"])
         if len(mask) > tasks:  # the parallel form, whose last action is the no-op
             if mask[tasks]:
-                return Decision(tasks, 0.0, np.zeros(tasks, dtype=np.float32))
+                return Preferences(tasks, 0.0, np.zeros(tasks, dtype=np.float32))
             observation = {**observation, "action_mask": mask[:tasks]}
         if not mask.any():
             raise ConfigError("this robot has nothing to choose; a policy acts only when its robot's turn comes")
@@ -144,14 +144,14 @@ class NeuralPolicy:
         if unchanging != self._encoded_for:
             self._encoding = self.network.encode(Tasks.of_observations([observation]))
             self._encoded_for = unchanging
-        log_probs = self.network(self._encoding, Moments.of_observations([observation]))[0, 0]
+        log_probs = self.network(self._encoding, DecisionStates.of_observations([observation]))[0, 0]
         if torch.isnan(log_probs).any():
             raise ConfigError(NOT_FINITE)
         if self.decode == "sample":
             action = int(torch.multinomial(log_probs.exp(), 1, generator=self._generator))
         else:
             action = int(log_probs.argmax())
-        return Decision(action, float(log_probs[action]), log_probs.exp().numpy())
+        return Preferences(action, float(log_probs[action]), log_probs.exp().numpy())
 
     def solve(
         self,

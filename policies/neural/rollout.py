@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, field, fields
-from typing import Any, Protocol, TypeVar
+from dataclasses import dataclass, field
+from typing import Any, Protocol
 
 import torch
 from torch import Tensor
@@ -15,13 +15,12 @@ from mrta_zoo.batch import BatchMission, ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.neural.capam.candidates import Candidates
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks, Watch
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks, Watch
+from mrta_zoo.policies.neural.tensor_tree import select, tree_map
 from mrta_zoo.rules import MaskRule
 
 SEGMENT = 12
 """Decisions between two looks at which missions are over; those are dropped, so that no work is done for them."""
-
-T = TypeVar("T", Moments, Candidates)
 
 NOT_FINITE = (
     "the network gives probabilities that are not finite: its weights are spoilt (did training diverge?), a feature or "
@@ -37,30 +36,13 @@ class Scorer(Protocol):
     """What decides: a `sharing.Network`, or anything else that scores tasks like one."""
 
     def encode(self, tasks: Tasks) -> Any:
-        """What it knows of S missions' tasks; `select` gives that of some of them."""
+        """What it knows of S missions' tasks: a tree of tensors (`tensor_tree`) whose first dimension is S."""
 
-    def features(self, encoding: Any, moments: Moments) -> Any:
-        """What scoring needs to know of these moments besides, or None."""
+    def features(self, encoding: Any, states: DecisionStates) -> Any:
+        """What scoring needs to know of these states besides, or None."""
 
-    def __call__(self, encoding: Any, moments: Moments, features: Any = None) -> Any:
+    def __call__(self, encoding: Any, states: DecisionStates, features: Any = None) -> Any:
         """(S, G, N) log-probabilities of choosing each task, as `AllocationNetwork.forward` gives them."""
-
-
-@dataclass(frozen=True, slots=True)
-class Taken:
-    """One decision of each of S · G missions.
-
-    Attributes:
-        moments: when it was taken, (S, G, …).
-        features: what the network made of them, or None.
-        actions: (S, G) int64 the tasks chosen.
-        live: (S, G) bool, false where there was nothing to decide.
-    """
-
-    moments: Moments
-    features: Candidates | None
-    actions: Tensor
-    live: Tensor
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,46 +51,35 @@ class Segment:
 
     Attributes:
         scenarios: (S',) int64 which scenarios they belong to.
-        moments: when they were taken, (S', Q, …).
-        features: what the network made of those moments, or None.
+        states: what they were taken in, (S', Q, …).
+        features: what the network made of those states, or None.
         actions: (S', Q) int64 the tasks chosen.
         live: (S', Q) bool, false where the mission was already over.
         sample: (Q,) int64 which of the G samples each belongs to.
     """
 
     scenarios: Tensor
-    moments: Moments
+    states: DecisionStates
     features: Candidates | None
     actions: Tensor
     live: Tensor
     sample: Tensor
 
     @classmethod
-    def of(cls, taken: Sequence[Taken], scenarios: Tensor) -> Segment:
-        """Decisions of the same missions, one after another."""
-        samples = taken[0].actions.shape[1]
-        features = [each.features for each in taken if each.features is not None]
-        return cls(
-            scenarios=scenarios,
-            moments=Moments(*(torch.cat([getattr(t.moments, f.name) for t in taken], 1) for f in fields(Moments))),
-            features=Candidates.cat(features) if features else None,
-            actions=torch.cat([each.actions for each in taken], 1),
-            live=torch.cat([each.live for each in taken], 1),
-            sample=torch.arange(samples, device=scenarios.device).repeat(len(taken)),
-        )
+    def cat(cls, segments: Sequence[Segment]) -> Segment:
+        """Decisions of the same missions, one segment after another."""
 
-    def lively(self) -> Segment:
-        """The same without the scenarios whose missions were all over."""
-        rows = self.live.any(1).nonzero().squeeze(1)
-        if len(rows) == len(self.live):
-            return self
-        return Segment(
-            scenarios=self.scenarios[rows],
-            moments=_rows_of(self.moments, rows),
-            features=None if self.features is None else _rows_of(self.features, rows),
-            actions=self.actions[rows],
-            live=self.live[rows],
-            sample=self.sample,
+        def joined(*tensors: Tensor) -> Tensor:
+            return torch.cat(tensors, 1)
+
+        first = segments[0]
+        return cls(
+            scenarios=first.scenarios,
+            states=tree_map(joined, *(each.states for each in segments)),
+            features=tree_map(joined, *(each.features for each in segments)),
+            actions=torch.cat([each.actions for each in segments], 1),
+            live=torch.cat([each.live for each in segments], 1),
+            sample=torch.cat([each.sample for each in segments]),
         )
 
 
@@ -197,8 +168,8 @@ def _roll_out(
             keep = live_scenarios.nonzero().squeeze(1)
             under_way = under_way[keep]
             mission = mission.select(_rows(keep, samples))
-            encoding = encoding.select(keep)
-        log_prob = run_segment(
+            encoding = select(encoding, keep)
+        log_prob = _run_segment(
             network, encoding, mission, samples, generator, under_way, out.segments if keep_segments else None,
             math.inf if until is None else until,
         )  # fmt: skip
@@ -210,7 +181,7 @@ def _roll_out(
     return out
 
 
-def run_segment(
+def _run_segment(
     network: Scorer,
     encoding: Any,
     mission: BatchMission,
@@ -238,15 +209,16 @@ def run_segment(
     Returns:
         (B,) log-probability of the decisions together.
     """
-    taken: list[Taken] = []
+    taken: list[Segment] = []
+    sample = torch.arange(samples, device=mission.actor.device)
     log_prob = torch.zeros(len(mission.actor), device=mission.actor.device)
     watch = Watch(mission, samples)
     for _ in range(SEGMENT):
         if until < math.inf and time.perf_counter() >= until:
             raise OutOfTimeError
-        moments = watch.moments()
-        features = network.features(encoding, moments)
-        log_probs = network(encoding, moments, features).flatten(0, 1)
+        states = watch.states()
+        features = network.features(encoding, states)
+        log_probs = network(encoding, states, features).flatten(0, 1)
         if generator is None:
             action = log_probs.argmax(-1)
         else:
@@ -257,16 +229,12 @@ def run_segment(
         log_prob += torch.where(live, log_probs.gather(1, action[:, None]).squeeze(1), 0.0)
         if segments is not None:
             shape = (-1, samples)
-            taken.append(Taken(moments, features, action.unflatten(0, shape), live.unflatten(0, shape)))
+            actions, lively = action.unflatten(0, shape), live.unflatten(0, shape)
+            taken.append(Segment(under_way, states, features, actions, lively, sample))
         mission.step(action)
     if segments is not None:
-        segments.append(Segment.of(taken, under_way))
+        segments.append(Segment.cat(taken))
     return log_prob
-
-
-def _rows_of(tables: T, rows: Tensor) -> T:
-    """Some of the scenarios in a dataclass of tensors."""
-    return type(tables)(*(getattr(tables, each.name)[rows] for each in fields(tables)))
 
 
 def _rows(scenarios: Tensor, samples: int) -> Tensor:

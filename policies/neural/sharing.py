@@ -20,7 +20,7 @@ from torch import Tensor, nn
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.neural.capam.candidates import Candidates
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.capam.network import AllocationNetwork, Encoding
 from mrta_zoo.wording import counted
 
@@ -39,10 +39,6 @@ class SeveralEncodings:
     tasks: Tasks
     of_network: tuple[Encoding, ...]
 
-    def select(self, index: Tensor) -> SeveralEncodings:
-        """The encodings of some of the scenarios."""
-        return SeveralEncodings(self.tasks.select(index), tuple(e.select(index) for e in self.of_network))
-
 
 class SeveralNetworks(nn.Module):
     """Networks that divide the robots among themselves, otherwise like `AllocationNetwork`."""
@@ -56,7 +52,7 @@ class SeveralNetworks(nn.Module):
         """All of them, in order."""
         raise NotImplementedError
 
-    def which(self, moments: Moments) -> Tensor:
+    def which(self, states: DecisionStates) -> Tensor:
         """(S, G) int64, the number of the network that decides for the robot to act.
 
         Raises:
@@ -72,20 +68,20 @@ class SeveralNetworks(nn.Module):
         """As `AllocationNetwork.surroundings`."""
         return SeveralEncodings(tasks, (self.networks[0].surroundings(tasks),))
 
-    def features(self, encoding: SeveralEncodings, moments: Moments) -> Candidates | None:
+    def features(self, encoding: SeveralEncodings, states: DecisionStates) -> Candidates | None:
         """As `AllocationNetwork.features`: they hold no weights, so one network's serve all."""
-        return self.networks[0].features(encoding.of_network[0], moments)
+        return self.networks[0].features(encoding.of_network[0], states)
 
-    def forward(self, encoding: SeveralEncodings, moments: Moments, features: Candidates | None = None) -> Tensor:
+    def forward(self, encoding: SeveralEncodings, states: DecisionStates, features: Candidates | None = None) -> Tensor:
         """As `AllocationNetwork.forward`, each decision by the network of the robot to act.
 
         Raises:
             ConfigError: if a robot at work has no network.
         """
-        which = self.which(moments)
-        log_probs: Tensor = self.networks[0](encoding.of_network[0], moments, features)
+        which = self.which(states)
+        log_probs: Tensor = self.networks[0](encoding.of_network[0], states, features)
         for number, network in enumerate(self.networks[1 : int(which.max()) + 1], start=1):
-            own = network(encoding.of_network[number], moments, features)
+            own = network(encoding.of_network[number], states, features)
             log_probs = torch.where((which == number)[..., None], own, log_probs)
         return log_probs
 
@@ -112,15 +108,15 @@ class IndependentNetworks(SeveralNetworks):
             raise self._none_for(f"robot {robot} has")
         return self.networks[robot]
 
-    def which(self, moments: Moments) -> Tensor:
+    def which(self, states: DecisionStates) -> Tensor:
         """(S, G) int64, the robot to act."""
-        numbers = torch.arange(moments.working.shape[-1], device=moments.working.device)
-        first, last = len(self.robots), int((moments.working * numbers).max())
+        numbers = torch.arange(states.working.shape[-1], device=states.working.device)
+        first, last = len(self.robots), int((states.working * numbers).max())
         if last == first:
             self.of_robot(first)
         if last > first:
             raise self._none_for(f"robots {first} {'and' if last == first + 1 else 'to'} {last} have")
-        return moments.ego
+        return states.ego
 
     def _none_for(self, who: str) -> ConfigError:
         return ConfigError(
@@ -148,23 +144,23 @@ class ByCapacityNetworks(SeveralNetworks):
         """All of them, by kind."""
         return tuple(cast(AllocationNetwork, network) for network in self.kinds)
 
-    def which(self, moments: Moments) -> Tensor:
+    def which(self, states: DecisionStates) -> Tensor:
         """(S, G) int64, the kind of the robot to act.
 
         Raises:
             ConfigError: if a robot at work is of another kind.
         """
-        kinds = torch.tensor(self.shares, device=moments.capacity.device)
-        off, kind = (moments.capacity[..., None] - kinds).abs().min(-1)
-        strange = moments.working & (off > SAME_KIND)
+        kinds = torch.tensor(self.shares, device=states.capacity.device)
+        off, kind = (states.capacity[..., None] - kinds).abs().min(-1)
+        strange = states.working & (off > SAME_KIND)
         if strange.any():
             robot = int(strange.nonzero()[0, -1])
-            share = float(moments.capacity[strange][0])
+            share = float(states.capacity[strange][0])
             raise ConfigError(
                 f"robot {robot} has no network: it has {share:.4g} of the strongest robot's capacity, and these "
                 f"policies are for robots with {' or '.join(f'{each:.4g}' for each in self.shares)} of it"
             )
-        return moments.of_ego(kind)
+        return states.of_ego(kind)
 
 
 Network = AllocationNetwork | SeveralNetworks

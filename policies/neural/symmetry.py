@@ -13,7 +13,7 @@ import torch
 from torch import Tensor
 
 from mrta_zoo.batch import ScenarioBatch
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.rollout import Scorer
 
 SYMMETRIES = 8
@@ -46,10 +46,6 @@ class View:
         """The symmetries by their numbers, (S,) int64 in 0 to 7, on maps that extend so far."""
         return cls(torch.stack((number & 1, number & 2), -1) > 0, (number & 4) > 0, extent)
 
-    def select(self, index: Tensor) -> View:
-        """How some of the scenarios are looked at."""
-        return View(self.flip[index], self.swap[index], self.extent[index])
-
     def of_places(self, xy: Tensor) -> Tensor:
         """(S, …, 2) places as they are seen."""
         shape = (len(xy), *[1] * (xy.dim() - 2), 2)
@@ -63,10 +59,6 @@ class ViewedEncoding:
 
     inner: Any
     view: View
-
-    def select(self, index: Tensor) -> ViewedEncoding:
-        """The encodings of some of the scenarios."""
-        return ViewedEncoding(self.inner.select(index), self.view.select(index))
 
 
 class SymmetricNetwork:
@@ -85,15 +77,15 @@ class SymmetricNetwork:
         # Padding lies at 0 and is mirrored along: networks do not look at it.
         return ViewedEncoding(self._network.encode(replace(tasks, xy=self._view.of_places(tasks.xy))), self._view)
 
-    def features(self, encoding: ViewedEncoding, moments: Moments) -> Any:
-        """As `AllocationNetwork.features`, of mirrored moments."""
-        return self._network.features(encoding.inner, _seen(encoding.view, moments))
+    def features(self, encoding: ViewedEncoding, states: DecisionStates) -> Any:
+        """As `AllocationNetwork.features`, of mirrored states."""
+        return self._network.features(encoding.inner, _seen(encoding.view, states))
 
-    def __call__(self, encoding: ViewedEncoding, moments: Moments, features: Any = None) -> Tensor:
-        """As `AllocationNetwork.forward`, of mirrored moments."""
-        log_probs: Tensor = self._network(encoding.inner, _seen(encoding.view, moments), features)
+    def __call__(self, encoding: ViewedEncoding, states: DecisionStates, features: Any = None) -> Tensor:
+        """As `AllocationNetwork.forward`, of mirrored states."""
+        log_probs: Tensor = self._network(encoding.inner, _seen(encoding.view, states), features)
         return log_probs
 
 
-def _seen(view: View, moments: Moments) -> Moments:
-    return replace(moments, xy=view.of_places(moments.xy))
+def _seen(view: View, states: DecisionStates) -> DecisionStates:
+    return replace(states, xy=view.of_places(states.xy))

@@ -6,7 +6,7 @@ from typing import Any
 
 from torch import Tensor
 
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.rollout import Scorer
 
 
@@ -27,9 +27,9 @@ class _Tempered:
     def encode(self, tasks: Tasks) -> Any:
         return self._network.encode(tasks)
 
-    def features(self, encoding: Any, moments: Moments) -> Any:
-        return self._network.features(encoding, moments)
+    def features(self, encoding: Any, states: DecisionStates) -> Any:
+        return self._network.features(encoding, states)
 
-    def __call__(self, encoding: Any, moments: Moments, features: Any = None) -> Tensor:
-        log_probs: Tensor = self._network(encoding, moments, features)
+    def __call__(self, encoding: Any, states: DecisionStates, features: Any = None) -> Tensor:
+        log_probs: Tensor = self._network(encoding, states, features)
         return (log_probs / self._temperature).log_softmax(-1)

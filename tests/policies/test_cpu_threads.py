@@ -125,7 +125,7 @@ def test_the_user_may_choose(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_policy(monkeypatch: pytest.MonkeyPatch) -> None:
     policy, scenario = small_policy(), small_scenario()
-    acting = watched(monkeypatch, neural.Moments, "of_observations")
+    acting = watched(monkeypatch, neural.DecisionStates, "of_observations")
     env = mrta_v0.env(scenario=scenario)
     env.reset(seed=1)
     policy.act(env.last()[0])

@@ -17,9 +17,10 @@ from mrta_zoo.batch import BatchMission, ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import build_network
+from mrta_zoo.policies.neural.tensor_tree import select
 from mrta_zoo.train import reinforce
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.gradients import accumulate_gradients
@@ -74,7 +75,7 @@ def test_accumulated_gradient_is_that_of_decisions_taken_one_by_one(sharing: str
             if robot >= 0:
                 action[row] = rollout.plans[row].routes[robot][position[row][robot]]
                 position[row][robot] += 1
-        scores = network(encoding, Moments.of_batch(mission))[:, 0].gather(1, action[:, None])[:, 0]
+        scores = network(encoding, DecisionStates.of_batch(mission))[:, 0].gather(1, action[:, None])[:, 0]
         log_prob = log_prob + torch.where(mission.done, 0.0, scores)
         mission.step(action)
     torch.testing.assert_close(log_prob.detach(), rollout.log_prob, rtol=1e-4, atol=1e-4)
@@ -105,7 +106,7 @@ def test_accumulated_gradient_is_autograds_of_the_whole_surrogate(sharing: str, 
     encoding = network.encode(Tasks.of_batch(scenarios))
     surrogate = torch.zeros(())
     for segment in rollout.segments:
-        log_probs = network(encoding.select(segment.scenarios), segment.moments)  # type: ignore[arg-type]
+        log_probs = network(select(encoding, segment.scenarios), segment.states)  # type: ignore[arg-type]
         for row, q in segment.live.nonzero().tolist():
             chosen = log_probs[row, q, segment.actions[row, q]]
             likely = log_probs[row, q][torch.isfinite(log_probs[row, q])]

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import fields
-from operator import attrgetter
+from collections.abc import Sequence
 
 import torch
 from torch import Tensor
 
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.policies.neural.capam.candidates import Candidates
-from mrta_zoo.policies.neural.capam.inputs import Moments
 from mrta_zoo.policies.neural.rollout import Segment
+from mrta_zoo.policies.neural.tensor_tree import select, tree_map
 
 
 class DecisionPool:
@@ -34,16 +31,13 @@ class DecisionPool:
         owner = torch.cat([segment.scenarios[row] for segment, (row, _) in zip(segments, taken, strict=True)])
         order = owner.argsort(stable=True)
 
-        def flat(of: Callable[[Segment], Tensor]) -> Tensor:
-            tables = [of(segment)[at] for segment, at in zip(segments, taken, strict=True)]
-            return torch.cat(tables)[order]
+        def flat(*tables: Tensor) -> Tensor:
+            return torch.cat([table[at] for table, at in zip(tables, taken, strict=True)])[order]
 
         self.scenarios = scenarios
-        self.actions = flat(attrgetter("actions"))
-        self.moments = Moments(*(flat(attrgetter(f"moments.{each.name}")) for each in fields(Moments)))
-        self.features: Candidates | None = None
-        if segments[0].features is not None:
-            self.features = Candidates(*(flat(attrgetter(f"features.{each.name}")) for each in fields(Candidates)))
+        self.actions = flat(*(segment.actions for segment in segments))
+        self.states = tree_map(flat, *(segment.states for segment in segments))
+        self.features = tree_map(flat, *(segment.features for segment in segments))
         self.count = owner.bincount(minlength=len(scenarios))
         """(S,) how many decisions each plan has."""
         self._first = self.count.cumsum(0) - self.count
@@ -67,9 +61,8 @@ class DecisionPool:
         at = (self._first[rows, None] + (share * count).long()).clamp(max=len(self.actions) - 1)
         drawn = Segment(
             scenarios=torch.arange(plans, device=device),
-            moments=Moments(*(getattr(self.moments, each.name)[at] for each in fields(Moments))),
-            features=self.features
-            and Candidates(*(getattr(self.features, each.name)[at] for each in fields(Candidates))),
+            states=select(self.states, at),
+            features=select(self.features, at),
             actions=self.actions[at],
             live=(count > 0).expand(-1, decisions),
             sample=torch.zeros(decisions, dtype=torch.int64, device=device),

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import torch
 from torch import Tensor
 
 from mrta_zoo.batch import BatchMission, ScenarioBatch
 from mrta_zoo.policies.neural.capam.inputs import Tasks, Watch
-from mrta_zoo.policies.neural.rollout import SEGMENT, Segment, Taken
+from mrta_zoo.policies.neural.rollout import SEGMENT, Segment
 from mrta_zoo.policies.neural.sharing import Network
 from mrta_zoo.policies.neural.symmetry import View
 from mrta_zoo.train.imitation.experts import ExpertPlan
@@ -58,45 +59,31 @@ def follow(network: Network, scenarios: ScenarioBatch, routes: Tensor) -> list[S
     A robot at the end of its route retires, whatever it could still choose, which no label says.
 
     Args:
-        network: says what it will want to see of each moment.
+        network: says what it will want to know of each state.
         scenarios: S scenarios.
         routes: (S, M, T) int64 the tasks of each robot in order, at least one −1 behind them; each finishes in time.
     """
     mission = BatchMission(scenarios, "feasible")
-    encoding = network.surroundings(Tasks.of_batch(scenarios))
+    encoding: Any = network.surroundings(Tasks.of_batch(scenarios))
     rows = torch.arange(len(scenarios), device=scenarios.device)
     position = torch.zeros(routes.shape[:2], dtype=torch.int64, device=routes.device)
+    sample = torch.zeros(1, dtype=torch.int64, device=routes.device)
     segments: list[Segment] = []
     while not bool(mission.done.all()):
-        segments.append(follow_segment(network, encoding, mission, routes, position, rows))
+        taken, watch = [], Watch(mission)
+        for _ in range(SEGMENT):
+            robot = mission.actor.clamp(min=0)
+            task = routes[rows, robot, position[rows, robot]]
+            at_end = (task < 0) & ~mission.done
+            mission.retire(at_end)
+            live = ~mission.done & ~at_end  # where a robot has retired, the next one has its turn next time
+            states = watch.states()
+            task = torch.where(live, task, 0)
+            taken.append(
+                Segment(rows, states, network.features(encoding, states), task[:, None], live[:, None], sample)
+            )
+            robot = mission.actor.clamp(min=0)
+            position[rows, robot] += live.long()
+            mission.step(task, where=live)
+        segments.append(Segment.cat(taken))
     return segments
-
-
-def follow_segment(
-    network: Network, encoding: object, mission: BatchMission, routes: Tensor, position: Tensor, rows: Tensor
-) -> Segment:
-    """The next `SEGMENT` decisions of `follow`; `mission` and `position` go on.
-
-    Args:
-        network: as for `follow`, as is `routes`.
-        encoding: of the scenarios, by `network`, or only their surroundings.
-        mission: S missions.
-        routes: their routes.
-        position: (S, M) int64 how many tasks of its route each robot has taken.
-        rows: (S,) int64 from 0 to S − 1.
-    """
-    taken, watch = [], Watch(mission)
-    for _ in range(SEGMENT):
-        robot = mission.actor.clamp(min=0)
-        task = routes[rows, robot, position[rows, robot]]
-        at_end = (task < 0) & ~mission.done
-        mission.retire(at_end)
-        live = ~mission.done & ~at_end  # where a robot has retired, the next one has its turn next time
-        moments = watch.moments()
-        task = torch.where(live, task, 0)
-        features = network.features(encoding, moments)  # type: ignore[arg-type]
-        taken.append(Taken(moments, features, task[:, None], live[:, None]))
-        robot = mission.actor.clamp(min=0)
-        position[rows, robot] += live.long()
-        mission.step(task, where=live)
-    return Segment.of(taken, rows)

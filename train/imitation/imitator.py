@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +15,6 @@ from mrta_zoo.policies.neural.sharing import Network
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size
 from mrta_zoo.train.gradients import accumulate_gradients
-from mrta_zoo.train.graphed_rollout import GraphedRollout
 from mrta_zoo.train.imitation.decision_pool import DecisionPool
 from mrta_zoo.train.imitation.decisions import PlanBatch, follow, turned
 from mrta_zoo.train.imitation.experts import ExpertPlan
@@ -36,14 +34,10 @@ class Imitator:
         config: the run.
         network: what learns.
         device: where it is.
-        graphed: follows plans on a GPU, if there is one.
     """
 
-    def __init__(
-        self, config: TrainConfig, network: Network, device: torch.device, graphed: GraphedRollout | None
-    ) -> None:
+    def __init__(self, config: TrainConfig, network: Network, device: torch.device) -> None:
         self._config, self._network, self._device = config, network, device
-        self._follow = graphed.follow if graphed else partial(follow, network)
         self._plans: dict[int, PlanBatch] = {}
         self._pools: tuple[int, dict[int, DecisionPool]] = (-1, {})
 
@@ -103,7 +97,7 @@ class Imitator:
         """The decisions behind plans, each seen in one of the map's symmetries."""
         plans, chosen = self._plans[tasks], torch.from_numpy(rows).to(self._device)
         scenarios = turned(plans.scenarios.select(chosen), torch.from_numpy(symmetry).to(self._device))
-        return scenarios, self._follow(scenarios, plans.routes[chosen])
+        return scenarios, follow(self._network, scenarios, plans.routes[chosen])
 
     def _pool(self, number: int, tasks: int) -> DecisionPool:
         """The decisions with so many tasks that steps draw from at present."""

@@ -21,6 +21,7 @@ from mrta_zoo.policies.neural.capam.inputs import Tasks
 from mrta_zoo.policies.neural.capam.network import AllocationNetwork
 from mrta_zoo.policies.neural.rollout import Segment
 from mrta_zoo.policies.neural.sharing import Network, SeveralNetworks
+from mrta_zoo.policies.neural.tensor_tree import select
 from mrta_zoo.policies.registry import make_solver
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.train.imitation.decisions import PlanBatch, follow
@@ -128,8 +129,8 @@ class Questionnaire:
         encoding = network.encode(Tasks.of_batch(self._batch.scenarios))
 
         def of(segment: Segment) -> Tensor:
-            log_probs: Tensor = network(encoding.select(segment.scenarios), segment.moments, segment.features)
-            counts = segment.live & (segment.moments.mask.sum(-1) >= 2)
+            log_probs: Tensor = network(select(encoding, segment.scenarios), segment.states, segment.features)
+            counts = segment.live & (segment.states.mask.sum(-1) >= 2)
             return log_probs[counts].exp()
 
         return torch.cat([of(segment) for segment in segments])

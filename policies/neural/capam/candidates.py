@@ -5,13 +5,12 @@ Ours, not the paper's. Times are in crossings (`mrta_zoo.policies.neural.capam.i
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import torch
 from torch import Tensor
 
-from mrta_zoo.policies.neural.capam.inputs import USUAL_CROSSINGS, Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import USUAL_CROSSINGS, DecisionStates, Tasks
 from mrta_zoo.policies.neural.capam.neighbourhood import Neighbourhood, kind
 from mrta_zoo.policies.neural.capam.prospects import PROSPECT_COLUMNS, prospects
 
@@ -69,20 +68,22 @@ class Candidates:
     left: Tensor
 
     @classmethod
-    def of(cls, tasks: Tasks, near: Neighbourhood, moments: Moments, most_tasks: int, most_peers: int) -> Candidates:
+    def of(
+        cls, tasks: Tasks, near: Neighbourhood, states: DecisionStates, most_tasks: int, most_peers: int
+    ) -> Candidates:
         """The candidates of G decisions in each of S scenarios: of what the mask allows the quickest to be done."""
         horizon = tasks.horizon[:, None, None]
-        elapsed = moments.elapsed[..., None] * horizon
-        ego_xy = moments.of_ego(moments.xy)
-        ego_pace = 1.0 / moments.of_ego(moments.speed)[..., None]
-        ego_rate = tasks.work_unit[:, None, None] / moments.of_ego(moments.capacity)[..., None]
+        elapsed = states.elapsed[..., None] * horizon
+        ego_xy = states.of_ego(states.xy)
+        ego_pace = 1.0 / states.of_ego(states.speed)[..., None]
+        ego_rate = tasks.work_unit[:, None, None] / states.of_ego(states.capacity)[..., None]
 
         # The quickest tasks. What lies beyond is seldom the right choice, and far more of it in large missions.
         travel_all = _distance(tasks.xy[:, None], ego_xy[..., None, :]) * ego_pace
         duration = travel_all + tasks.workload[:, None] * ego_rate
-        key = (duration.double() + 1e-6 * kind(tasks)[:, None]).masked_fill(~moments.mask, torch.inf)
+        key = (duration.double() + 1e-6 * kind(tasks)[:, None]).masked_fill(~states.mask, torch.inf)
         index = key.topk(min(most_tasks, key.shape[-1]), dim=-1, largest=False).indices
-        valid = moments.mask.gather(2, index)
+        valid = states.mask.gather(2, index)
 
         def of_task(values: Tensor) -> Tensor:  # (S, N) -> (S, G, K)
             return values[:, None].expand(-1, index.shape[1], -1).gather(2, index)
@@ -93,7 +94,7 @@ class Candidates:
         busy = travel + work * ego_rate
         slack = left - busy
 
-        robots = _Robots.of(tasks, moments, ego_xy, elapsed, most_peers)
+        robots = _Robots.of(tasks, states, ego_xy, elapsed, most_peers)
         arrival = (
             robots.wait[..., None] + _distance(robots.xy[..., None, :], xy[..., None, :, :]) * robots.pace[..., None]
         )
@@ -103,13 +104,13 @@ class Candidates:
         rivals = (in_time & robots.valid[..., None])[..., 1:, :].sum(-2) / peers
         first, second = _two_least(rival, -2)
 
-        possible, next_travel = _what_could_follow(tasks, near, moments, index, left, busy, elapsed, ego_pace, ego_rate)
+        possible, next_travel = _what_could_follow(tasks, near, states, index, left, busy, elapsed, ego_pace, ego_rate)
         gaps = next_travel.masked_fill(~possible, FAR)
         gap, second_gap = _two_least(gaps, -1)
         neighbours = torch.isfinite(near.distance).sum(-1)
         count = possible.sum(-1) / of_task(neighbours).clamp(min=1)
 
-        others = moments.mask[..., None, :].expand(*index.shape, -1).scatter(3, index[..., None], False)
+        others = states.mask[..., None, :].expand(*index.shape, -1).scatter(3, index[..., None], False)
         outlook = prospects(
             travel=_distance(xy[..., None, :], tasks.xy[:, None, None]) * ego_pace[..., None],
             work=tasks.workload[:, None] * ego_rate,
@@ -130,9 +131,9 @@ class Candidates:
             ),
             -1,
         )  # fmt: skip
-        free = moments.mask.sum(-1, keepdim=True)
+        free = states.mask.sum(-1, keepdim=True)
         exist = tasks.exists.sum(-1)[:, None, None]
-        time_left = (tasks.deadline[:, None] * horizon - elapsed).masked_fill(~moments.mask, 0.0)
+        time_left = (tasks.deadline[:, None] * horizon - elapsed).masked_fill(~states.mask, 0.0)
         mission = torch.cat(
             (
                 elapsed / USUAL_CROSSINGS, horizon.expand_as(elapsed) / USUAL_CROSSINGS,
@@ -175,11 +176,6 @@ class Candidates:
             2,
         )  # fmt: skip
 
-    @classmethod
-    def cat(cls, moments: Sequence[Candidates]) -> Candidates:
-        """The candidates of one moment after another, along G."""
-        return cls(*(torch.cat([getattr(each, field.name) for each in moments], 1) for field in fields(cls)))
-
 
 @dataclass(frozen=True, slots=True)
 class _Robots:
@@ -196,24 +192,24 @@ class _Robots:
     """(S, G, 1) number of peers at work, near or not."""
 
     @classmethod
-    def of(cls, tasks: Tasks, moments: Moments, ego_xy: Tensor, elapsed: Tensor, most_peers: int) -> _Robots:
-        wait = (moments.ready * tasks.horizon[:, None, None] - elapsed).clamp(min=0)
-        peers = moments.peers
-        reach = wait + _distance(moments.xy, ego_xy[..., None, :]) / moments.speed
+    def of(cls, tasks: Tasks, states: DecisionStates, ego_xy: Tensor, elapsed: Tensor, most_peers: int) -> _Robots:
+        wait = (states.ready * tasks.horizon[:, None, None] - elapsed).clamp(min=0)
+        peers = states.peers
+        reach = wait + _distance(states.xy, ego_xy[..., None, :]) / states.speed
         # Ties, frequent on whole coordinates, are broken by what robots are, not how numbered.
-        kind = 2.7 * moments.xy[..., 0] + 1.9 * moments.xy[..., 1] + moments.capacity + 1.3 * moments.speed
+        kind = 2.7 * states.xy[..., 0] + 1.9 * states.xy[..., 1] + states.capacity + 1.3 * states.speed
         key = (reach.double() + 1e-6 * kind).masked_fill(~peers, torch.inf)
         count = min(most_peers, key.shape[-1] - 1)
         nearest = key.topk(count, dim=-1, largest=False).indices
-        chosen = torch.cat((moments.ego[..., None], nearest), -1)
+        chosen = torch.cat((states.ego[..., None], nearest), -1)
 
         def of_robot(values: Tensor) -> Tensor:
             return values.gather(2, chosen)
 
         valid = torch.cat((torch.ones_like(peers[..., :1]), peers.gather(2, nearest)), -1)
         # Padding has speed and capacity 0 in observations; what is divided by them would not be finite.
-        capacity, speed = (of_robot(of).masked_fill(~valid, 1.0) for of in (moments.capacity, moments.speed))
-        xy = torch.stack((of_robot(moments.xy[..., 0]), of_robot(moments.xy[..., 1])), -1)
+        capacity, speed = (of_robot(of).masked_fill(~valid, 1.0) for of in (states.capacity, states.speed))
+        xy = torch.stack((of_robot(states.xy[..., 0]), of_robot(states.xy[..., 1])), -1)
         return cls(
             xy=xy,
             wait=of_robot(wait),
@@ -246,7 +242,7 @@ class _Robots:
 def _what_could_follow(
     tasks: Tasks,
     near: Neighbourhood,
-    moments: Moments,
+    states: DecisionStates,
     index: Tensor,
     left: Tensor,
     busy: Tensor,
@@ -266,7 +262,7 @@ def _what_could_follow(
 
     deadline = of_neighbour((tasks.deadline * tasks.horizon[:, None])[:, None].expand(s, g, -1)) - elapsed[..., None]
     work = of_neighbour(tasks.workload[:, None].expand(s, g, -1)) * rate[..., None]
-    possible = of_neighbour(moments.mask) & (busy[..., None] + travel + work <= deadline)
+    possible = of_neighbour(states.mask) & (busy[..., None] + travel + work <= deadline)
     return possible, travel
 
 

@@ -7,10 +7,10 @@ from collections.abc import Callable
 import torch
 from torch import Tensor, nn
 
-from mrta_zoo.policies.neural.capam.inputs import USUAL_CROSSINGS, Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import USUAL_CROSSINGS, DecisionStates, Tasks
 from mrta_zoo.policies.neural.capam.named import Named, of_shape
 
-ContextFeature = Callable[[Tasks, Moments], Tensor]
+ContextFeature = Callable[[Tasks, DecisionStates], Tensor]
 """(S, G) numbers, one a decision; best about in [0, 1]."""
 
 CONTEXT_FEATURES: Named[ContextFeature] = Named("context_features", {})
@@ -43,31 +43,31 @@ class Context(nn.Module):
         self.peer = nn.Linear(self.PEER, embedding)
         self.query = nn.Linear(3 * embedding, embedding)
 
-    def forward(self, tasks: Tasks, moments: Moments) -> Tensor:
+    def forward(self, tasks: Tasks, states: DecisionStates) -> Tensor:
         """The query of each decision: (S, G, h)."""
-        own_xy = moments.of_ego(moments.xy)
-        shape, device = moments.elapsed.shape, moments.elapsed.device
-        horizon = tasks.horizon[:, None].expand_as(moments.elapsed)
-        work_unit = tasks.work_unit[:, None].expand_as(moments.elapsed)
+        own_xy = states.of_ego(states.xy)
+        shape, device = states.elapsed.shape, states.elapsed.device
+        horizon = tasks.horizon[:, None].expand_as(states.elapsed)
+        work_unit = tasks.work_unit[:, None].expand_as(states.elapsed)
         own = torch.stack(
             (
-                moments.elapsed,
-                moments.elapsed * horizon / USUAL_CROSSINGS,
+                states.elapsed,
+                states.elapsed * horizon / USUAL_CROSSINGS,
                 horizon / USUAL_CROSSINGS,
                 work_unit,
-                moments.of_ego(moments.capacity),
+                states.of_ego(states.capacity),
                 *own_xy.unbind(-1),
                 *(
-                    of_shape("context feature", name, feature(tasks, moments), shape, device).float()
+                    of_shape("context feature", name, feature(tasks, states), shape, device).float()
                     for name, feature in self.more.items()
                 ),
             ),
             -1,
         )
-        offset = moments.xy - own_xy[..., None, :]
-        peer = torch.cat((moments.xy, offset, moments.capacity[..., None]), -1)
-        peers = torch.relu(self.peer(peer)) * moments.peers[..., None]
-        count = moments.peers.sum(-1, keepdim=True).clamp(min=1)
+        offset = states.xy - own_xy[..., None, :]
+        peer = torch.cat((states.xy, offset, states.capacity[..., None]), -1)
+        peers = torch.relu(self.peer(peer)) * states.peers[..., None]
+        count = states.peers.sum(-1, keepdim=True).clamp(min=1)
         pooled = torch.cat((torch.relu(self.own(own)), peers.sum(-2) / count, peers.amax(-2)), -1)
         query: Tensor = self.query(pooled)
         return query

@@ -26,10 +26,6 @@ class Keys:
     glimpse_value: Tensor
     score_key: Tensor
 
-    def select(self, index: Tensor) -> Keys:
-        """The keys of some of the scenarios."""
-        return Keys(self.glimpse_key[index], self.glimpse_value[index], self.score_key[index])
-
 
 class AttentionDecoder(nn.Module):
     """Attention from the query to the tasks (paper Eqs. 5-6), a feed-forward layer, then clipped scores.

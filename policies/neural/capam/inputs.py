@@ -1,6 +1,6 @@
 """What the networks read: observations as tensors, from the AEC environment or from the batched simulator.
 
-Shapes: S scenarios, G decisions of each (several samples of a mission, or several moments), N tasks, M robots.
+Shapes: S scenarios, G decisions of each (several samples of a mission, or several states), N tasks, M robots.
 Places are in lengths L of the frame (`mrta_zoo.scales`); times either as shares of T, the latest deadline that can
 bind, or in *crossings*, the time L/V that the fastest robot takes to cross the frame. Crossings make travel and
 deadlines comparable across scenarios.
@@ -9,7 +9,7 @@ deadlines comparable across scenarios.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 import torch
@@ -50,10 +50,6 @@ class Tasks:
     horizon: Tensor
     work_unit: Tensor
 
-    def select(self, index: Tensor) -> Tasks:
-        """The tasks of some of the scenarios."""
-        return Tasks(*(getattr(self, each.name)[index] for each in fields(self)))
-
     @classmethod
     def of_batch(cls, scenarios: ScenarioBatch) -> Tasks:
         """The tasks of a batch of scenarios."""
@@ -87,7 +83,7 @@ class Tasks:
 
 
 @dataclass(frozen=True, slots=True)
-class Moments:
+class DecisionStates:
     """What decisions depend on besides the tasks; float32 unless said otherwise.
 
     Attributes:
@@ -111,18 +107,18 @@ class Moments:
     mask: Tensor
 
     @classmethod
-    def of_batch(cls, mission: BatchMission, groups: int = 1) -> Moments:
-        """The present moment of B = S·G missions, of which each `groups` in a row share their scenario."""
-        return Watch(mission, groups).moments()
+    def of_batch(cls, mission: BatchMission, groups: int = 1) -> DecisionStates:
+        """The present states of B = S·G missions, of which each `groups` in a row share their scenario."""
+        return Watch(mission, groups).states()
 
     @classmethod
-    def of_observations(cls, observations: Sequence[Observation], device: torch.device | str = "cpu") -> Moments:
-        """The moments of S observers (G = 1)."""
+    def of_observations(cls, observations: Sequence[Observation], device: torch.device | str = "cpu") -> DecisionStates:
+        """The states of S observers (G = 1)."""
         mask = torch.from_numpy(np.stack([o["action_mask"] for o in observations])).to(device)
         return cls.of_tables(_stacked(observations, ("robots", "mission"), device), mask)
 
     @classmethod
-    def of_tables(cls, tables: Mapping[str, Tensor], mask: Tensor) -> Moments:
+    def of_tables(cls, tables: Mapping[str, Tensor], mask: Tensor) -> DecisionStates:
         """The same of tables already stacked: ``robots`` (S, M, 7) and ``mission`` (S, 3), with the mask (S, N)."""
         robots = tables["robots"][:, None]
         return cls(
@@ -149,7 +145,7 @@ class Moments:
 
 
 class Watch:
-    """Reads one moment after another of the same B missions, with what doesn't change computed once.
+    """Reads the states of the same B missions again and again, with what doesn't change computed once.
 
     Args:
         mission: B = S·G missions.
@@ -166,10 +162,10 @@ class Watch:
         self._capacity = (s.capacity / scales.capacity[:, None]).clamp(max=1).float().unflatten(0, self._groups)
         self._speed = (s.speed / scales.speed[:, None]).clamp(max=1).float().unflatten(0, self._groups)
 
-    def moments(self) -> Moments:
-        """The present moment."""
+    def states(self) -> DecisionStates:
+        """The present states."""
         mission, groups = self.mission, self._groups
-        return Moments(
+        return DecisionStates(
             xy=((mission.position - self._origin) / self._length).clamp(0, 1).float().unflatten(0, groups),
             capacity=self._capacity,
             speed=self._speed,

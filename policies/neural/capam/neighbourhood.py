@@ -24,10 +24,6 @@ class Neighbourhood:
     index: Tensor
     distance: Tensor
 
-    def select(self, index: Tensor) -> Neighbourhood:
-        """The neighbourhoods of some of the scenarios."""
-        return Neighbourhood(self.index[index], self.distance[index])
-
     @classmethod
     def of(cls, tasks: Tasks) -> Neighbourhood:
         """The `NEIGHBOURS` nearest tasks of each task, or as many as there are."""

@@ -13,7 +13,7 @@ from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.capam.context import Context
 from mrta_zoo.policies.neural.capam.decoder import AttentionDecoder, Keys
 from mrta_zoo.policies.neural.capam.encoders import build_encoder
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.capam.named import of_shape
 from mrta_zoo.policies.neural.capam.neighbourhood import Neighbourhood
 from mrta_zoo.policies.neural.capam.node_features import NODE_FEATURES, node_features
@@ -34,15 +34,6 @@ class Encoding:
     keys: Keys | None = None
     embeddings: Tensor | None = None
     neighbourhood: Neighbourhood | None = None
-
-    def select(self, index: Tensor) -> Encoding:
-        """The encodings of some of the scenarios."""
-        return Encoding(
-            self.tasks.select(index),
-            None if self.keys is None else self.keys.select(index),
-            None if self.embeddings is None else self.embeddings[index],
-            None if self.neighbourhood is None else self.neighbourhood.select(index),
-        )
 
 
 class AllocationNetwork(nn.Module):
@@ -89,38 +80,38 @@ class AllocationNetwork(nn.Module):
             return Encoding(tasks)
         return Encoding(tasks, neighbourhood=Neighbourhood.of(tasks))
 
-    def features(self, encoding: Encoding, moments: Moments) -> Candidates | None:
-        """What `forward` needs to know of these moments besides, or None; no gradients flow through it."""
+    def features(self, encoding: Encoding, states: DecisionStates) -> Candidates | None:
+        """What `forward` needs to know of these states besides, or None; no gradients flow through it."""
         if encoding.neighbourhood is None:
             return None
         with torch.no_grad():
             return Candidates.of(
-                encoding.tasks, encoding.neighbourhood, moments, self.config.candidates, self.config.peers
+                encoding.tasks, encoding.neighbourhood, states, self.config.candidates, self.config.peers
             )
 
-    def forward(self, encoding: Encoding, moments: Moments, features: Candidates | None = None) -> Tensor:
+    def forward(self, encoding: Encoding, states: DecisionStates, features: Candidates | None = None) -> Tensor:
         """Log-probabilities of choosing each task: (S, G, N); −inf where the mask forbids, or no candidate is.
 
         Where a mission is over (nothing may be chosen) they are uniform, so that no NaN arises.
 
         Args:
             encoding: of the S scenarios, from `encode`.
-            moments: G decisions of each.
-            features: what `features` gave for these moments, if it was called before.
+            states: G decisions of each.
+            features: what `features` gave for these states, if it was called before.
         """
-        over = ~moments.mask.any(-1, keepdim=True)
+        over = ~states.mask.any(-1, keepdim=True)
         if isinstance(self.decoder, AttentionDecoder):
             assert encoding.keys is not None
             assert self.context is not None
-            scores = self.decoder(self.context(encoding.tasks, moments), encoding.keys, moments.mask)
-            scores = scores.masked_fill(~moments.mask, -torch.inf)
+            scores = self.decoder(self.context(encoding.tasks, states), encoding.keys, states.mask)
+            scores = scores.masked_fill(~states.mask, -torch.inf)
         else:
             assert encoding.embeddings is not None
             if features is None:
-                features = self.features(encoding, moments)
+                features = self.features(encoding, states)
             assert features is not None
             of_candidates = self.decoder(encoding.embeddings, features)
-            scores = torch.full(moments.mask.shape, -torch.inf, device=of_candidates.device)
+            scores = torch.full(states.mask.shape, -torch.inf, device=of_candidates.device)
             scores = scores.scatter(2, features.index, of_candidates)
         log_probs: Tensor = scores.masked_fill(over, 0.0).log_softmax(-1)
         return log_probs

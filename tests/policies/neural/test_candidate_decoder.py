@@ -10,7 +10,7 @@ from mrta_zoo.batch import BatchMission, ScenarioBatch
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.policies.neural.capam.candidate_decoder import CandidateDecoder, _Norm
 from mrta_zoo.policies.neural.capam.candidates import Candidates
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.capam.neighbourhood import Neighbourhood
 
 HEADS, LAYERS = 2, 3
@@ -23,7 +23,7 @@ def candidates() -> Candidates:
     cases = [TaptcGenerator(tasks=(8, 8), robots=(m, m))(rng) for m in (3, 2)]
     mission = BatchMission(ScenarioBatch.of(cases))
     tasks = Tasks.of_batch(mission.scenarios)
-    return Candidates.of(tasks, Neighbourhood.of(tasks), Moments.of_batch(mission), 6, 2)
+    return Candidates.of(tasks, Neighbourhood.of(tasks), DecisionStates.of_batch(mission), 6, 2)
 
 
 def row(linear: nn.Linear, columns: torch.Tensor, output: int) -> float:

@@ -14,7 +14,7 @@ from mrta_zoo.batch import BatchMission, ScenarioBatch
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.neural.capam.candidates import MISSION_COLUMNS, ROBOT_COLUMNS, TASK_COLUMNS, Candidates
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.capam.neighbourhood import Neighbourhood
 from mrta_zoo.policies.neural.capam.prospects import PROSPECT_COLUMNS
 from mrta_zoo.policies.neural.rollout import roll_out
@@ -45,7 +45,7 @@ FROM_1_TO_2 = np.hypot(0.3, 0.7)
 
 def candidates(mission: BatchMission, most_tasks: int = 4, most_peers: int = 1) -> Candidates:
     tasks = Tasks.of_batch(mission.scenarios)
-    return Candidates.of(tasks, Neighbourhood.of(tasks), Moments.of_batch(mission), most_tasks, most_peers)
+    return Candidates.of(tasks, Neighbourhood.of(tasks), DecisionStates.of_batch(mission), most_tasks, most_peers)
 
 
 def column(found: Candidates, name: str) -> list[float]:
@@ -69,7 +69,7 @@ def network_of(config: NetworkConfig, seed: int = 3) -> Network:
 @torch.no_grad()
 def log_probs(network: Network, mission: BatchMission) -> torch.Tensor:
     """(B, N) of the present decisions."""
-    result: torch.Tensor = network(network.encode(Tasks.of_batch(mission.scenarios)), Moments.of_batch(mission))  # type: ignore[arg-type]
+    result: torch.Tensor = network(network.encode(Tasks.of_batch(mission.scenarios)), DecisionStates.of_batch(mission))  # type: ignore[arg-type]
     return result[:, 0]
 
 
@@ -241,7 +241,7 @@ def test_padding_of_observations_changes_nothing(encoder: str) -> None:
             observation = env.last()[0]
             with torch.no_grad():
                 encoding = network.encode(Tasks.of_observations([observation]))
-                seen = network(encoding, Moments.of_observations([observation]))[0, 0]  # type: ignore[arg-type]
+                seen = network(encoding, DecisionStates.of_observations([observation]))[0, 0]  # type: ignore[arg-type]
             assert torch.isneginf(seen[scenario.num_tasks :]).all()
             of_batch = log_probs(network, mission)[0]
             torch.testing.assert_close(seen[: scenario.num_tasks], of_batch, rtol=1e-4, atol=1e-4)
@@ -257,7 +257,7 @@ def test_where_a_mission_is_over_nothing_is_likelier_and_gradients_are_finite() 
     mission = BatchMission(ScenarioBatch.of([SCENARIO, other]))
     assert mission.done.tolist() == [False, True]
     network = network_of(PLUS)
-    rows = network(network.encode(Tasks.of_batch(mission.scenarios)), Moments.of_batch(mission))[:, 0]  # type: ignore[arg-type]
+    rows = network(network.encode(Tasks.of_batch(mission.scenarios)), DecisionStates.of_batch(mission))[:, 0]  # type: ignore[arg-type]
     torch.testing.assert_close(rows[1], torch.full((4,), 1 / 4).log())
     (rows[0, 1] + rows[1].sum()).backward()
     gradients = [p.grad for p in network.parameters() if p.grad is not None]

@@ -19,7 +19,7 @@ from mrta_zoo.policies.neural import beam_search as beam_search_module
 from mrta_zoo.policies.neural import decoding, rollout
 from mrta_zoo.policies.neural import policy as neural
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.decoding import Decoding, best_plan
 from mrta_zoo.policies.neural.policy import NeuralPolicy
 from mrta_zoo.policies.neural.rollout import OutOfTimeError, roll_out
@@ -55,9 +55,6 @@ class Seen:
 
     tasks: Tasks
 
-    def select(self, index: torch.Tensor) -> Seen:
-        return Seen(self.tasks.select(index))
-
 
 class Fixed:
     """A network that gives every task the same score always."""
@@ -69,24 +66,24 @@ class Fixed:
     def encode(self, tasks: Tasks) -> Seen:
         return Seen(tasks)
 
-    def features(self, encoding: Seen, moments: Moments) -> None:
+    def features(self, encoding: Seen, states: DecisionStates) -> None:
         return None
 
-    def score(self, encoding: Seen, moments: Moments) -> torch.Tensor:
-        return self.scores.expand(moments.mask.shape)
+    def score(self, encoding: Seen, states: DecisionStates) -> torch.Tensor:
+        return self.scores.expand(states.mask.shape)
 
-    def __call__(self, encoding: Seen, moments: Moments, features: Any = None) -> torch.Tensor:
+    def __call__(self, encoding: Seen, states: DecisionStates, features: Any = None) -> torch.Tensor:
         self.calls += 1
-        over = ~moments.mask.any(-1, keepdim=True)
-        scores = self.score(encoding, moments).masked_fill(~moments.mask & ~over, -torch.inf)
+        over = ~states.mask.any(-1, keepdim=True)
+        scores = self.score(encoding, states).masked_fill(~states.mask & ~over, -torch.inf)
         return scores.log_softmax(-1)
 
 
 class Leftmost(Fixed):
     """A network that likes the task with the least x."""
 
-    def score(self, encoding: Seen, moments: Moments) -> torch.Tensor:
-        return (-9 * encoding.tasks.xy[:, None, :, 0]).expand(moments.mask.shape)
+    def score(self, encoding: Seen, states: DecisionStates) -> torch.Tensor:
+        return (-9 * encoding.tasks.xy[:, None, :, 0]).expand(states.mask.shape)
 
 
 def test_a_beam_finds_what_greedy_misses() -> None:
@@ -195,8 +192,8 @@ def test_a_network_sees_the_mirrored_mission() -> None:
         encoding = symmetric.encode(Tasks.of_batch(eight))
         expected_encoding = network.encode(Tasks.of_batch(really.scenarios))
         for _ in range(4):
-            moments, expected = Moments.of_batch(mission), Moments.of_batch(really)
-            seen = symmetric(encoding, moments, symmetric.features(encoding, moments))
+            states, expected = DecisionStates.of_batch(mission), DecisionStates.of_batch(really)
+            seen = symmetric(encoding, states, symmetric.features(encoding, states))
             torch.testing.assert_close(seen, network(expected_encoding, expected), rtol=1e-4, atol=1e-4)
             assert not torch.allclose(seen[0], seen[1], atol=1e-4)
             action = mission.mask().int().argmax(1)

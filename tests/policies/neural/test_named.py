@@ -17,7 +17,7 @@ from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.capam.context import CONTEXT_FEATURES
 from mrta_zoo.policies.neural.capam.encoders import ENCODERS
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.capam.linear_encoder import LinearEncoder
 from mrta_zoo.policies.neural.capam.node_features import NODE_FEATURES
 from mrta_zoo.policies.neural.policy import load_policy
@@ -32,7 +32,7 @@ OWN = NetworkConfig(
 @pytest.fixture
 def registered() -> Iterator[None]:
     NODE_FEATURES.register("zero")(lambda tasks: tasks.deadline * 0)
-    CONTEXT_FEATURES.register("choices")(lambda tasks, moments: moments.mask.sum(-1) / 10.0)
+    CONTEXT_FEATURES.register("choices")(lambda tasks, states: states.mask.sum(-1) / 10.0)
 
     @ENCODERS.register("mine")
     class Mine(LinearEncoder):
@@ -53,7 +53,7 @@ def test_what_is_registered_is_used_saved_and_found_again(tmp_path: Path) -> Non
     CONTEXT_FEATURES.pop("choices")
     with pytest.raises(ConfigError, match=r"context_features has 'choices'; expected none, or one of your own, regist"):
         load_policy(tmp_path / "own.safetensors")
-    CONTEXT_FEATURES.register("choices")(lambda tasks, moments: moments.mask.sum(-1) / 10.0)
+    CONTEXT_FEATURES.register("choices")(lambda tasks, states: states.mask.sum(-1) / 10.0)
     assert load_policy(tmp_path / "own.safetensors").solve(scenario).routes == routes
 
 
@@ -63,11 +63,11 @@ def test_a_context_feature_changes_the_query() -> None:
     network: Any = build_network(OWN, "shared", 1, seed=0)
     assert network.context.own.weight.shape == (16, 8)
     batch = ScenarioBatch.of([TaptcGenerator(tasks=(10, 10), robots=(2, 2))(np.random.default_rng(0))])
-    tasks, moments = Tasks.of_batch(batch), Moments.of_batch(BatchMission(batch))
+    tasks, states = Tasks.of_batch(batch), DecisionStates.of_batch(BatchMission(batch))
     seen: list[Tensor] = []
     network.context.own.register_forward_hook(lambda module, given, found: seen.append(given[0]))
-    network.context(tasks, moments)
-    assert float(seen[0][0, 0, -1]) == pytest.approx(int(moments.mask.sum()) / 10)
+    network.context(tasks, states)
+    assert float(seen[0][0, 0, -1]) == pytest.approx(int(states.mask.sum()) / 10)
 
 
 def test_names_of_the_packages_own_are_not_for_others() -> None:
@@ -97,7 +97,7 @@ def test_registering_again_replaces() -> None:
     [
         (NODE_FEATURES, "zero", lambda tasks: tasks.xy, r"node feature 'zero' gave shape \(1, 10, 2\); expected a t"),
         (NODE_FEATURES, "zero", lambda tasks: 3.0, r"node feature 'zero' gave a float; expected .* of shape \(1, 10\)"),
-        (CONTEXT_FEATURES, "choices", lambda tasks, moments: moments.mask, r"context feature 'choices' gave shape"),
+        (CONTEXT_FEATURES, "choices", lambda tasks, states: states.mask, r"context feature 'choices' gave shape"),
         (ENCODERS, "mine", lambda features, config: LinearEncoder(features, 8), r"encoder 'mine' gave shape"),
         (NODE_FEATURES, "zero", lambda tasks: tasks.deadline.to("meta"), "gave strided of float32 on meta; "),
         (NODE_FEATURES, "zero", lambda tasks: tasks.deadline.to_sparse(), "gave sparse_coo of float32 on cpu"),
@@ -124,9 +124,9 @@ def test_an_encoder_may_count_in_other_numbers() -> None:
 def asked() -> Tensor:
     """What a network of one's own makes of a mission's first moment."""
     batch = ScenarioBatch.of([TaptcGenerator(tasks=(10, 10), robots=(2, 2))(np.random.default_rng(0))])
-    tasks, moments = Tasks.of_batch(batch), Moments.of_batch(BatchMission(batch))
+    tasks, states = Tasks.of_batch(batch), DecisionStates.of_batch(BatchMission(batch))
     network = build_network(OWN, "shared", 1, seed=0)
-    found: Tensor = network(network.encode(tasks), moments)
+    found: Tensor = network(network.encode(tasks), states)
     return found
 
 

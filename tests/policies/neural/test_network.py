@@ -15,7 +15,7 @@ from mrta_zoo.generators import Mixture, TaptcGenerator, UniformGenerator
 from mrta_zoo.policies.neural.capam.capsule_encoder import CapsuleEncoder, scaled_laplacian
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.capam.encoders import ENCODERS
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.policy import NeuralPolicy
 from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import IndependentNetworks, build_network
@@ -59,7 +59,7 @@ def log_probs(network: torch.nn.Module, scenarios: list[Scenario], steps: int = 
     for _ in range(steps):
         mission.step(mission.mask().int().argmax(1))
     with torch.no_grad():
-        return network(network.encode(Tasks.of_batch(batch)), Moments.of_batch(mission))[:, 0]
+        return network(network.encode(Tasks.of_batch(batch)), DecisionStates.of_batch(mission))[:, 0]
 
 
 @pytest.mark.parametrize("config", CONFIGS.values(), ids=CONFIGS)
@@ -154,7 +154,7 @@ def test_observations_and_simulator_give_the_network_the_same_numbers(config: Ne
         observation = env.last()[0]
         for of_env, of_batch in (
             (Tasks.of_observations([observation]), Tasks.of_batch(mission.scenarios)),
-            (Moments.of_observations([observation]), Moments.of_batch(mission)),
+            (DecisionStates.of_observations([observation]), DecisionStates.of_batch(mission)),
         ):
             for each in fields(of_env):
                 torch.testing.assert_close(getattr(of_env, each.name), getattr(of_batch, each.name), rtol=0, atol=0)
@@ -169,9 +169,9 @@ def test_observations_and_simulator_give_the_network_the_same_numbers(config: Ne
 @pytest.mark.parametrize("config", CONFIGS.values(), ids=CONFIGS)
 def test_who_only_watches_sees_what_who_decides_sees(config: NetworkConfig, sharing: str) -> None:
     network, batch = network_of(config, sharing), ScenarioBatch.of(draw(3))
-    tasks, moments = Tasks.of_batch(batch), Moments.of_batch(BatchMission(batch))
-    seen = network.features(network.surroundings(tasks), moments)  # type: ignore[operator]
-    expected = network.features(network.encode(tasks), moments)  # type: ignore[operator]
+    tasks, states = Tasks.of_batch(batch), DecisionStates.of_batch(BatchMission(batch))
+    seen = network.features(network.surroundings(tasks), states)  # type: ignore[operator]
+    expected = network.features(network.encode(tasks), states)  # type: ignore[operator]
     assert (seen is None) == (config.decoder == "attention")
     if seen is not None:
         for each in fields(seen):

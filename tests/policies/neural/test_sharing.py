@@ -17,7 +17,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator, UniformGenerator
 from mrta_zoo.io import write_scenario
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.policy import NeuralPolicy, load_policy
 from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import ByCapacityNetworks, IndependentNetworks, Sharing, build_network, seeded
@@ -79,7 +79,9 @@ def log_probs(network: torch.nn.Module, scenario: Scenario) -> torch.Tensor:
     """(N,) of the first decision, which is robot 0's."""
     batch = ScenarioBatch.of([scenario])
     with torch.no_grad():
-        found: torch.Tensor = network(network.encode(Tasks.of_batch(batch)), Moments.of_batch(BatchMission(batch)))  # type: ignore[operator]
+        found: torch.Tensor = network(
+            network.encode(Tasks.of_batch(batch)), DecisionStates.of_batch(BatchMission(batch))
+        )  # type: ignore[operator]
     return found[0, 0]
 
 

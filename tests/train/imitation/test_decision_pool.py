@@ -13,7 +13,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.classical.local_search.eils import EilsConfig, EilsSolver
 from mrta_zoo.policies.neural.capam.candidates import Candidates
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
-from mrta_zoo.policies.neural.capam.inputs import Moments, Tasks
+from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.rollout import Segment
 from mrta_zoo.policies.neural.sharing import build_network
 from mrta_zoo.train.imitation.decision_pool import DecisionPool
@@ -41,7 +41,7 @@ def rows_of(scenarios: ScenarioBatch, segment: Segment) -> list[tuple[object, ..
     """Each live decision as plain numbers, its scenario's included."""
     rows = []
     for row, q in segment.live.nonzero().tolist():
-        tables = [getattr(segment.moments, each.name)[row, q] for each in fields(Moments)]
+        tables = [getattr(segment.states, each.name)[row, q] for each in fields(DecisionStates)]
         if segment.features is not None:
             tables += [getattr(segment.features, each.name)[row, q] for each in fields(Candidates)]
         tables.append(scenarios.task_xy[segment.scenarios[row]])
@@ -90,8 +90,8 @@ def test_a_network_sees_what_it_saw_when_following() -> None:
     network = build_network(PLUS, "shared", 1, seed=3)
     of, drawn = DecisionPool(scenarios, segments).draw(40, 6, torch.Generator().manual_seed(2))
     encoding = network.encode(Tasks.of_batch(of))
-    given = network(encoding, drawn.moments, drawn.features)  # type: ignore[arg-type]
-    anew = network(encoding, drawn.moments)  # type: ignore[arg-type]
+    given = network(encoding, drawn.states, drawn.features)  # type: ignore[arg-type]
+    anew = network(encoding, drawn.states)  # type: ignore[arg-type]
     live = drawn.live
     torch.testing.assert_close(given[live], anew[live])
 

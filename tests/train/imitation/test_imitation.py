@@ -63,13 +63,13 @@ def check_followed(scenarios: list[Scenario], routes: list[Routes], segments: li
         for row, b in enumerate(segment.scenarios.tolist()):
             m = scenarios[b].num_robots
             for q in segment.live[row].nonzero().flatten().tolist():
-                robot, task = int(segment.moments.ego[row, q]), int(segment.actions[row, q])
-                assert segment.moments.mask[row, q, task], "what a plan takes is legal"
+                robot, task = int(segment.states.ego[row, q]), int(segment.actions[row, q])
+                assert segment.states.mask[row, q, task], "what a plan takes is legal"
                 *_, now, working = want[b][len(followed[b])]
-                elapsed = float(segment.moments.elapsed[row, q])
+                elapsed = float(segment.states.elapsed[row, q])
                 assert elapsed == pytest.approx(min(1.0, now / Scales.of(scenarios[b]).time), rel=1e-6)
-                assert segment.moments.working[row, q, :m].tolist() == working
-                assert not segment.moments.working[row, q, m:].any()
+                assert segment.states.working[row, q, :m].tolist() == working
+                assert not segment.states.working[row, q, m:].any()
                 followed[b].append((robot, task))
     assert followed == [[(robot, task) for robot, task, *_ in each] for each in want]
     return sum(map(len, followed))
@@ -98,10 +98,10 @@ def test_a_robot_at_the_end_of_its_route_retires() -> None:
     (segment,) = follow(build_network(PLUS, "shared", 1, seed=0), plans.scenarios, plans.routes)
     # Step 0: robot 0 retires. Step 1: robot 1 takes task 1. Step 2: it retires, and the mission is over.
     assert segment.live[0].nonzero().flatten().tolist() == [1]
-    assert segment.moments.ego[0, 1] == 1
+    assert segment.states.ego[0, 1] == 1
     assert segment.actions[0, 1] == 1
-    assert segment.moments.working[0, 1].tolist() == [False, True]
-    assert segment.moments.mask[0, 1].tolist() == [True, True, True]
+    assert segment.states.working[0, 1].tolist() == [False, True]
+    assert segment.states.mask[0, 1].tolist() == [True, True, True]
 
 
 def test_plans_without_any_task_leave_nothing_to_decide() -> None:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -19,13 +19,12 @@ from mrta_zoo.policies.neural.capam.inputs import Tasks
 from mrta_zoo.policies.neural.rollout import Segment
 from mrta_zoo.train import reinforce
 from mrta_zoo.train.config import TrainConfig
-from mrta_zoo.train.cuda_graph import tensors
 from mrta_zoo.train.distribution import draw_size, most_robots, team
 from mrta_zoo.train.imitation import imitator
 from mrta_zoo.train.imitation.decisions import PlanBatch, follow
 from mrta_zoo.train.imitation.experts import ExpertPlan, expert_scenario
 from mrta_zoo.train.reinforce import Reinforce, Update, Validation
-from mrta_zoo.train.scenarios import Drawn, Feed
+from mrta_zoo.train.scenarios import Drawn, draw, draws
 
 ATTENTION = NetworkConfig(embedding=32, heads=4)
 CANDIDATES = replace(ATTENTION, decoder="candidates", decision_layers=1, candidates=10, peers=2)
@@ -48,7 +47,7 @@ def cross_entropy(run: Reinforce, plans: list[ExpertPlan]) -> float:
     with torch.no_grad():
         encoding = run.network.encode(Tasks.of_batch(batch.scenarios))
         for segment in follow(run.network, batch.scenarios, batch.routes):
-            log_probs = run.network(encoding, segment.moments, segment.features)  # type: ignore[arg-type]
+            log_probs = run.network(encoding, segment.states, segment.features)  # type: ignore[arg-type]
             chosen = log_probs.gather(2, segment.actions[..., None]).squeeze(2)[segment.live]
             total, count = total - float(chosen.sum()), count + len(chosen)
     return total / count
@@ -197,31 +196,32 @@ def test_independent_networks_are_as_many_as_the_largest_team() -> None:
     assert sizes == {True}
 
 
-@pytest.fixture
-def feed() -> Iterator[Feed]:
-    config = replace(TINY, imitation_updates=0, tasks=(10, 20), updates=3)
-    made = Feed(config, None, workers=2)
-    yield made
-    made.close()
-
-
 def same(one: Drawn, other: Drawn) -> bool:
-    return one.seed == other.seed and all(
-        torch.equal(mine, its) for mine, its in zip(tensors(one.scenarios), tensors(other.scenarios), strict=True)
+    tables = fields(ScenarioBatch)
+    return (one.update, one.seed) == (other.update, other.seed) and all(
+        torch.equal(getattr(one.scenarios, each.name), getattr(other.scenarios, each.name))
+        for each in tables
+        if each.name != "scales"
     )
 
 
-def test_other_processes_draw_the_same_scenarios(feed: Feed) -> None:
-    alone = Feed(feed._config, None)
-    drawn = [feed.take(update) for update in range(3)]
-    assert all(same(each, alone.take(update)) for update, each in enumerate(drawn))
+def test_other_processes_draw_the_same_scenarios() -> None:
+    config = replace(TINY, imitation_updates=0, tasks=(10, 20), updates=3)
+    ahead = draws(config, None, 1, workers=2)
+    drawn = [next(ahead) for _ in range(4)]  # beyond the last update, too: a run may be made longer
+    ahead.close()
+    assert all(same(*each) for each in zip(drawn, draws(config, None, 1), strict=False))
     assert not same(drawn[0], drawn[1])
-    # A run that was made longer goes on; one that was resumed begins anywhere.
-    assert same(feed.take(3), alone.take(3))
-    assert same(feed.take(1), alone.take(1))
+
+
+def test_each_update_has_its_own_scenarios_whatever_came_before() -> None:
+    run = Reinforce(replace(TINY, imitation_updates=0, tasks=(10, 20), updates=5))
+    for update in (0, 1, 1, 4, 2):  # as they come, after an update that failed, and resumed elsewhere
+        run.update = update
+        assert same(run._drawn(), draw(run.config, None, update))
 
 
 def test_a_given_generator_draws_the_scenarios() -> None:
     generator = UniformGenerator(tasks=(7, 7), robots=(2, 2))
-    scenarios = Feed(TINY, generator).take(0).scenarios
+    scenarios = next(draws(TINY, generator, 0)).scenarios
     assert (len(scenarios), scenarios.num_tasks, scenarios.num_robots) == (2, 7, 2)
