@@ -8,10 +8,10 @@ from torch import Tensor, nn
 from mrta_zoo.policies.neural.capam.candidates import (
     MISSION_COLUMNS,
     PAIR_COLUMNS,
-    ROBOT_COLUMNS,
     TASK_COLUMNS,
     Candidates,
 )
+from mrta_zoo.policies.neural.capam.robots import ROBOT_COLUMNS
 
 
 class CandidateDecoder(nn.Module):

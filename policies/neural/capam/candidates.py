@@ -11,18 +11,17 @@ import torch
 from torch import Tensor
 
 from mrta_zoo.policies.neural.capam.inputs import USUAL_CROSSINGS, DecisionStates, Tasks
-from mrta_zoo.policies.neural.capam.neighbourhood import Neighbourhood, kind
+from mrta_zoo.policies.neural.capam.neighbourhood import Neighbourhood, distance, kind
 from mrta_zoo.policies.neural.capam.prospects import PROSPECT_COLUMNS, prospects
+from mrta_zoo.policies.neural.capam.robots import FAR, Robots
+from mrta_zoo.policies.neural.tensor_tree import tree_map
 
 TASK_COLUMNS = (
     "dx", "dy", "x", "y", "travel", "work", "slack", "tightness", "left", "head_start", "second_head_start", "rivals",
     "next_gap", "second_gap", "next_count", "rank", *PROSPECT_COLUMNS,
 )  # fmt: skip
-ROBOT_COLUMNS = ("dx", "dy", "x", "y", "wait", "capacity", "speed", "is_ego")
 MISSION_COLUMNS = ("elapsed", "horizon", "work_unit", "free_share", "free_a_robot", "time_left")
 PAIR_COLUMNS = 5
-FAR = 1.0
-"""Where durations saturate, in crossings."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,91 +71,38 @@ class Candidates:
         cls, tasks: Tasks, near: Neighbourhood, states: DecisionStates, most_tasks: int, most_peers: int
     ) -> Candidates:
         """The candidates of G decisions in each of S scenarios: of what the mask allows the quickest to be done."""
-        horizon = tasks.horizon[:, None, None]
-        elapsed = states.elapsed[..., None] * horizon
-        ego_xy = states.of_ego(states.xy)
-        ego_pace = 1.0 / states.of_ego(states.speed)[..., None]
-        ego_rate = tasks.work_unit[:, None, None] / states.of_ego(states.capacity)[..., None]
-
-        # The quickest tasks. What lies beyond is seldom the right choice, and far more of it in large missions.
-        travel_all = _distance(tasks.xy[:, None], ego_xy[..., None, :]) * ego_pace
-        duration = travel_all + tasks.workload[:, None] * ego_rate
-        key = (duration.double() + 1e-6 * kind(tasks)[:, None]).masked_fill(~states.mask, torch.inf)
+        robots = Robots.of(tasks, states, most_peers)
+        every = _Durations.of(tasks, states, robots)
+        # What lies beyond the quickest is seldom the right choice, and far more of it in large missions.
+        key = (every.busy.double() + 1e-6 * kind(tasks)[:, None]).masked_fill(~states.mask, torch.inf)
         index = key.topk(min(most_tasks, key.shape[-1]), dim=-1, largest=False).indices
         valid = states.mask.gather(2, index)
 
-        def of_task(values: Tensor) -> Tensor:  # (S, N) -> (S, G, K)
-            return values[:, None].expand(-1, index.shape[1], -1).gather(2, index)
-
-        xy = torch.stack((of_task(tasks.xy[..., 0]), of_task(tasks.xy[..., 1])), -1)
-        work, left = of_task(tasks.workload), of_task(tasks.deadline) * horizon - elapsed
-        travel = travel_all.gather(2, index)
-        busy = travel + work * ego_rate
-        slack = left - busy
-
-        robots = _Robots.of(tasks, states, ego_xy, elapsed, most_peers)
-        arrival = (
-            robots.wait[..., None] + _distance(robots.xy[..., None, :], xy[..., None, :, :]) * robots.pace[..., None]
-        )
-        in_time = arrival + work[..., None, :] * robots.rate[..., None] <= left[..., None, :]
-        rival = arrival.masked_fill(~robots.valid[..., None], torch.inf)[..., 1:, :]
-        peers = robots.valid[..., 1:].sum(-1, keepdim=True).clamp(min=1)
-        rivals = (in_time & robots.valid[..., None])[..., 1:, :].sum(-2) / peers
-        first, second = _two_least(rival, -2)
-
-        possible, next_travel = _what_could_follow(tasks, near, states, index, left, busy, elapsed, ego_pace, ego_rate)
-        gaps = next_travel.masked_fill(~possible, FAR)
-        gap, second_gap = _two_least(gaps, -1)
-        neighbours = torch.isfinite(near.distance).sum(-1)
-        count = possible.sum(-1) / of_task(neighbours).clamp(min=1)
-
-        others = states.mask[..., None, :].expand(*index.shape, -1).scatter(3, index[..., None], False)
-        outlook = prospects(
-            travel=_distance(xy[..., None, :], tasks.xy[:, None, None]) * ego_pace[..., None],
-            work=tasks.workload[:, None] * ego_rate,
-            start=busy,
-            left=tasks.deadline[:, None] * horizon - elapsed,
-            others=others,
-            rival=robots.first_peer(tasks.xy),
-        )
+        own = tree_map(lambda times: times.gather(2, index), every)
+        xy = torch.stack([_of_tasks(column, index) for column in tasks.xy.unbind(-1)], -1)
+        work = _of_tasks(tasks.workload, index)
         rank = torch.arange(index.shape[-1], device=index.device) / most_tasks
-        task = torch.stack(
-            (
-                *(xy - ego_xy[..., None, :]).unbind(-1), *xy.unbind(-1),
-                travel.clamp(max=FAR), (work * ego_rate).clamp(max=FAR),
-                (slack / 2).clamp(-FAR, FAR), 1 / (1 + 10 * slack.clamp(min=0)), (left / 4).clamp(-FAR, FAR),
-                (first - travel).clamp(-FAR, FAR), (second - travel).clamp(-FAR, FAR), rivals,
-                gap.clamp(max=FAR), second_gap.clamp(max=FAR), count, rank.expand_as(travel),
-                *outlook.unbind(-1),
-            ),
-            -1,
+        columns = (
+            *(xy - robots.xy[..., :1, :]).unbind(-1), *xy.unbind(-1),
+            *own.columns(),
+            *_rivalry(robots, own, xy, work),
+            *_what_could_follow(near, states, robots, every, own, index),
+            rank.expand_as(own.travel),
+            *_prospects(tasks, states, robots, every, own, index, xy),
         )  # fmt: skip
-        free = states.mask.sum(-1, keepdim=True)
-        exist = tasks.exists.sum(-1)[:, None, None]
-        time_left = (tasks.deadline[:, None] * horizon - elapsed).masked_fill(~states.mask, 0.0)
-        mission = torch.cat(
-            (
-                elapsed / USUAL_CROSSINGS, horizon.expand_as(elapsed) / USUAL_CROSSINGS,
-                tasks.work_unit[:, None, None].expand_as(elapsed), free / exist,
-                (free / (1 + robots.working) / 50).clamp(max=2.0),
-                time_left.sum(-1, keepdim=True) / free.clamp(min=1) / 4,
-            ),
-            -1,
-        ).clamp(max=2.0)  # fmt: skip
-        tasks_wide = travel.shape
         return cls(
             index=index,
             valid=valid,
-            task=task * valid[..., None],
-            robot=robots.columns(ego_xy),
+            task=torch.stack(columns, -1) * valid[..., None],
+            robot=robots.columns(),
             robot_valid=robots.valid,
-            mission=mission,
+            mission=_mission_columns(tasks, states, robots, every),
             place=torch.cat((robots.xy, xy), -2),
-            after=torch.cat((robots.wait, busy), -1),
-            pace=torch.cat((robots.pace, ego_pace.expand(tasks_wide)), -1),
-            rate=torch.cat((robots.rate, ego_rate.expand(tasks_wide)), -1),
+            after=torch.cat((robots.wait, own.busy), -1),
+            pace=torch.cat((robots.pace, robots.pace[..., :1].expand_as(work)), -1),
+            rate=torch.cat((robots.rate, robots.rate[..., :1].expand_as(work)), -1),
             work=work,
-            left=left,
+            left=own.left,
         )
 
     def pairs(self) -> Tensor:
@@ -165,8 +111,8 @@ class Candidates:
         The time that it would take (in three scales), the time to spare, and whether there is any.
         """
         robots = self.place.shape[-2] - self.index.shape[-1]
-        distance = _distance(self.place[..., :, None, :], self.place[..., None, robots:, :])
-        time = distance * self.pace[..., None] + self.work[..., None, :] * self.rate[..., None]
+        way = distance(self.place[..., :, None, :], self.place[..., None, robots:, :])
+        time = way * self.pace[..., None] + self.work[..., None, :] * self.rate[..., None]
         spare = self.left[..., None, :] - self.after[..., None] - time
         return torch.stack(
             (
@@ -178,96 +124,104 @@ class Candidates:
 
 
 @dataclass(frozen=True, slots=True)
-class _Robots:
-    """The acting robot and its nearest peers: (S, G, R, …)."""
+class _Durations:
+    """What tasks take the robot to act, all of them (S, G, N) or the candidates (S, G, K), in crossings.
 
-    xy: Tensor
-    wait: Tensor
-    pace: Tensor
-    rate: Tensor
-    capacity: Tensor
-    speed: Tensor
-    valid: Tensor
-    working: Tensor
-    """(S, G, 1) number of peers at work, near or not."""
+    Attributes:
+        travel: to get there.
+        effort: to do it.
+        busy: both together.
+        left: from now to the deadline.
+    """
+
+    travel: Tensor
+    effort: Tensor
+    busy: Tensor
+    left: Tensor
 
     @classmethod
-    def of(cls, tasks: Tasks, states: DecisionStates, ego_xy: Tensor, elapsed: Tensor, most_peers: int) -> _Robots:
-        wait = (states.ready * tasks.horizon[:, None, None] - elapsed).clamp(min=0)
-        peers = states.peers
-        reach = wait + _distance(states.xy, ego_xy[..., None, :]) / states.speed
-        # Ties, frequent on whole coordinates, are broken by what robots are, not how numbered.
-        kind = 2.7 * states.xy[..., 0] + 1.9 * states.xy[..., 1] + states.capacity + 1.3 * states.speed
-        key = (reach.double() + 1e-6 * kind).masked_fill(~peers, torch.inf)
-        count = min(most_peers, key.shape[-1] - 1)
-        nearest = key.topk(count, dim=-1, largest=False).indices
-        chosen = torch.cat((states.ego[..., None], nearest), -1)
+    def of(cls, tasks: Tasks, states: DecisionStates, robots: Robots) -> _Durations:
+        horizon = tasks.horizon[:, None, None]
+        travel = distance(tasks.xy[:, None], robots.xy[..., :1, :]) * robots.pace[..., :1]
+        effort = tasks.workload[:, None] * robots.rate[..., :1]
+        left = tasks.deadline[:, None] * horizon - states.elapsed[..., None] * horizon
+        return cls(travel, effort, travel + effort, left)
 
-        def of_robot(values: Tensor) -> Tensor:
-            return values.gather(2, chosen)
-
-        valid = torch.cat((torch.ones_like(peers[..., :1]), peers.gather(2, nearest)), -1)
-        # Padding has speed and capacity 0 in observations; what is divided by them would not be finite.
-        capacity, speed = (of_robot(of).masked_fill(~valid, 1.0) for of in (states.capacity, states.speed))
-        xy = torch.stack((of_robot(states.xy[..., 0]), of_robot(states.xy[..., 1])), -1)
-        return cls(
-            xy=xy,
-            wait=of_robot(wait),
-            pace=1.0 / speed,
-            rate=tasks.work_unit[:, None, None] / capacity,
-            capacity=capacity,
-            speed=speed,
-            valid=valid,
-            working=peers.sum(-1, keepdim=True),
+    def columns(self) -> tuple[Tensor, ...]:
+        """Travel, work, slack, tightness, left."""
+        slack = self.left - self.busy
+        return (
+            self.travel.clamp(max=FAR),
+            self.effort.clamp(max=FAR),
+            (slack / 2).clamp(-FAR, FAR),
+            1 / (1 + 10 * slack.clamp(min=0)),
+            (self.left / 4).clamp(-FAR, FAR),
         )
 
-    def first_peer(self, places: Tensor) -> Tensor:
-        """(S, G, N) from now until the first of these peers could be at each of (S, N, 2) places; infinite without."""
-        if self.wait.shape[-1] == 1:
-            return torch.full((*self.wait.shape[:2], places.shape[1]), torch.inf, device=places.device)
-        way = _distance(self.xy[..., 1:, None, :], places[:, None, None]) * self.pace[..., 1:, None]
-        arrival = self.wait[..., 1:, None] + way
-        return arrival.masked_fill(~self.valid[..., 1:, None], torch.inf).amin(-2)
 
-    def columns(self, ego_xy: Tensor) -> Tensor:
-        is_ego = torch.zeros_like(self.wait)
-        is_ego[..., 0] = 1.0
-        columns = (
-            *(self.xy - ego_xy[..., None, :]).unbind(-1), *self.xy.unbind(-1),
-            self.wait.clamp(max=FAR), self.capacity, self.speed, is_ego,
-        )  # fmt: skip
-        return torch.stack(columns, -1) * self.valid[..., None]
+def _rivalry(robots: Robots, own: _Durations, xy: Tensor, work: Tensor) -> tuple[Tensor, ...]:
+    """Head start on the first and the second peer, and the share of peers that could do each candidate in time."""
+    way = distance(robots.xy[..., None, :], xy[..., None, :, :]) * robots.pace[..., None]
+    arrival = robots.wait[..., None] + way
+    in_time = arrival + work[..., None, :] * robots.rate[..., None] <= own.left[..., None, :]
+    peers = robots.valid[..., 1:].sum(-1, keepdim=True).clamp(min=1)
+    rivals = (in_time & robots.valid[..., None])[..., 1:, :].sum(-2) / peers
+    first, second = _two_least(arrival.masked_fill(~robots.valid[..., None], torch.inf)[..., 1:, :], -2)
+    return (first - own.travel).clamp(-FAR, FAR), (second - own.travel).clamp(-FAR, FAR), rivals
 
 
 def _what_could_follow(
-    tasks: Tasks,
-    near: Neighbourhood,
-    states: DecisionStates,
-    index: Tensor,
-    left: Tensor,
-    busy: Tensor,
-    elapsed: Tensor,
-    pace: Tensor,
-    rate: Tensor,
-) -> tuple[Tensor, Tensor]:
-    """Of each candidate's neighbours: whether the robot could do them after it, and the way, both (S, G, K, J)."""
+    near: Neighbourhood, states: DecisionStates, robots: Robots, every: _Durations, own: _Durations, index: Tensor
+) -> tuple[Tensor, ...]:
+    """The way to the nearest and the second neighbour that could follow each candidate, and the share that could."""
     s, g, k = index.shape
     j = near.index.shape[-1]
     wide = index.reshape(s, g * k, 1).expand(-1, -1, j)
     neighbour = near.index.gather(1, wide).view(s, g, k, j)
-    travel = near.distance.gather(1, wide).view(s, g, k, j) * pace[..., None]
+    travel = near.distance.gather(1, wide).view(s, g, k, j) * robots.pace[..., :1, None]
 
     def of_neighbour(values: Tensor) -> Tensor:  # (S, G, N) -> (S, G, K, J)
         return values.gather(2, neighbour.flatten(2)).view(s, g, k, j)
 
-    deadline = of_neighbour((tasks.deadline * tasks.horizon[:, None])[:, None].expand(s, g, -1)) - elapsed[..., None]
-    work = of_neighbour(tasks.workload[:, None].expand(s, g, -1)) * rate[..., None]
-    possible = of_neighbour(states.mask) & (busy[..., None] + travel + work <= deadline)
-    return possible, travel
+    done = own.busy[..., None] + travel + of_neighbour(every.effort)
+    possible = of_neighbour(states.mask) & (done <= of_neighbour(every.left))
+    gap, second_gap = _two_least(travel.masked_fill(~possible, FAR), -1)
+    neighbours = _of_tasks(torch.isfinite(near.distance).sum(-1), index)
+    return gap.clamp(max=FAR), second_gap.clamp(max=FAR), possible.sum(-1) / neighbours.clamp(min=1)
 
 
-def _distance(a: Tensor, b: Tensor) -> Tensor:
-    return (a - b).square().sum(-1).sqrt()
+def _prospects(
+    tasks: Tasks, states: DecisionStates, robots: Robots, every: _Durations, own: _Durations, index: Tensor, xy: Tensor
+) -> tuple[Tensor, ...]:
+    """How much there is to do around each candidate, in the columns of `prospects`."""
+    columns = prospects(
+        travel=distance(xy[..., None, :], tasks.xy[:, None, None]) * robots.pace[..., :1, None],
+        work=every.effort,
+        start=own.busy,
+        left=every.left,
+        others=states.mask[..., None, :].expand(*index.shape, -1).scatter(3, index[..., None], False),
+        rival=robots.first_peer(tasks.xy),
+    )
+    return columns.unbind(-1)
+
+
+def _mission_columns(tasks: Tasks, states: DecisionStates, robots: Robots, every: _Durations) -> Tensor:
+    """(S, G, len(MISSION_COLUMNS)) what is known of the mission as a whole."""
+    horizon = tasks.horizon[:, None, None]
+    elapsed = states.elapsed[..., None] * horizon
+    free = states.mask.sum(-1, keepdim=True)
+    time_left = every.left.masked_fill(~states.mask, 0.0).sum(-1, keepdim=True)
+    columns = (
+        elapsed / USUAL_CROSSINGS, horizon.expand_as(elapsed) / USUAL_CROSSINGS,
+        tasks.work_unit[:, None, None].expand_as(elapsed), free / tasks.exists.sum(-1)[:, None, None],
+        (free / (1 + robots.working) / 50).clamp(max=2.0), time_left / free.clamp(min=1) / 4,
+    )  # fmt: skip
+    return torch.cat(columns, -1).clamp(max=2.0)
+
+
+def _of_tasks(values: Tensor, index: Tensor) -> Tensor:
+    """(S, G, K) the values of the candidates, of (S, N) values of all tasks."""
+    return values[:, None].expand(-1, index.shape[1], -1).gather(2, index)
 
 
 def _two_least(values: Tensor, dim: int) -> tuple[Tensor, Tensor]:

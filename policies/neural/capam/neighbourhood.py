@@ -27,16 +27,20 @@ class Neighbourhood:
     @classmethod
     def of(cls, tasks: Tasks) -> Neighbourhood:
         """The `NEIGHBOURS` nearest tasks of each task, or as many as there are."""
-        offset = tasks.xy[:, :, None] - tasks.xy[:, None, :]
-        distance = offset.square().sum(-1).sqrt()
-        n = distance.shape[-1]
-        blocked = ~tasks.exists[:, None, :] | torch.eye(n, dtype=torch.bool, device=distance.device)
-        distance = distance.masked_fill(blocked, torch.inf)
-        key = distance.double() + 1e-6 * kind(tasks)[:, None, :]
+        apart = distance(tasks.xy[:, :, None], tasks.xy[:, None, :])
+        n = apart.shape[-1]
+        blocked = ~tasks.exists[:, None, :] | torch.eye(n, dtype=torch.bool, device=apart.device)
+        apart = apart.masked_fill(blocked, torch.inf)
+        key = apart.double() + 1e-6 * kind(tasks)[:, None, :]
         index = key.topk(min(NEIGHBOURS, n), dim=-1, largest=False).indices
-        return cls(index, distance.gather(2, index))
+        return cls(index, apart.gather(2, index))
 
 
 def kind(tasks: Tasks) -> Tensor:
     """(S, N) float64 numbers that break ties, frequent on whole coordinates, by what tasks are, not how numbered."""
     return tasks.deadline.double() + 2.7 * tasks.xy[..., 0] + 1.9 * tasks.xy[..., 1] + 1.3 * tasks.workload
+
+
+def distance(a: Tensor, b: Tensor) -> Tensor:
+    """(…) how far (…, 2) places are from others."""
+    return (a - b).square().sum(-1).sqrt()

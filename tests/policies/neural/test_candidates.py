@@ -12,11 +12,12 @@ from strategies import seeded_chooser, seeded_scenarios
 from mrta_zoo import Scenario, mrta_v0
 from mrta_zoo.batch import BatchMission, ScenarioBatch
 from mrta_zoo.generators import UniformGenerator
-from mrta_zoo.policies.neural.capam.candidates import MISSION_COLUMNS, ROBOT_COLUMNS, TASK_COLUMNS, Candidates
+from mrta_zoo.policies.neural.capam.candidates import MISSION_COLUMNS, TASK_COLUMNS, Candidates
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.capam.neighbourhood import Neighbourhood
 from mrta_zoo.policies.neural.capam.prospects import PROSPECT_COLUMNS
+from mrta_zoo.policies.neural.capam.robots import ROBOT_COLUMNS
 from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import Network, build_network
 from mrta_zoo.scales import Scales
