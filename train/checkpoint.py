@@ -23,25 +23,16 @@ from pathlib import Path
 import torch
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.io.dataclass_json import read_json, write_json
 from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.io.paths import check_no_url, make_folder
 from mrta_zoo.io.records import write_records
 from mrta_zoo.io.source import check_name
-from mrta_zoo.policies.neural.weights import (
-    PolicyInfo,
-    load_state,
-    read_json,
-    read_tensors,
-    save_policy,
-    write_json,
-    write_tensors,
-)
+from mrta_zoo.policies.neural.weights import PolicyInfo, load_state, read_tensors, save_policy, write_tensors
+from mrta_zoo.train.adam_state import adam_tensors, restore_adam
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import most_robots
 from mrta_zoo.train.reinforce import Reinforce, RunOptions, Validation
-
-MOMENTS = ("step", "exp_avg", "exp_avg_sq")
-"""What Adam keeps of each weight."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +54,7 @@ def start(folder: Path, config: TrainConfig, options: RunOptions | None = None) 
     """
     check_no_url(folder, ConfigError)
     _check_new(folder)
-    check_name(folder.name, str(folder), "the policy's name", ConfigError)  # what plans will be signed with
+    check_name(folder.name, str(folder), "the policy's name", ConfigError)  # stored in its plans as their method
     run = Reinforce(config, options=options)  # before anything is written: it may refuse the configuration
     try:
         make_folder(folder)
@@ -93,14 +84,15 @@ def resume(folder: Path, options: RunOptions | None = None) -> tuple[Reinforce, 
     numbers = _checkpoints(folder)
     if not numbers:
         return Reinforce(config, options=options), 0.0
-    run = Reinforce(
-        replace(config, initial=""), options=options
-    )  # the checkpoint holds the weights; the policy may be gone by now
+    # The checkpoint holds the weights; the policy that the run began from may be gone by now.
+    run = Reinforce(replace(config, initial=""), options=options)
     run.config = config
     at = folder / "checkpoints" / _name(numbers[-1])
     state = read_json(at / "state.json", RunState)
     load_state(run.network, read_tensors(at / "network.safetensors"), at / "network.safetensors")
-    _load_optimizer(run, at / "optimizer.safetensors", state.update)
+    # Adam knows nothing of what has had no gradient: before the first update, or of robots that never decided.
+    complete = state.update > 0 and config.sharing == "shared"
+    restore_adam(run.optimizer, run.network, at / "optimizer.safetensors", state.update, complete)
     # Before its first update of REINFORCE a baseline may have nothing to remember yet.
     if config.baseline != "samples" and (run.baseline.state() or state.update > config.imitation_updates):
         run.baseline.restore(read_tensors(at / "baseline.safetensors"), at / "baseline.safetensors")
@@ -155,7 +147,7 @@ def _save(folder: Path, run: Reinforce, seconds: float) -> None:
     shutil.rmtree(partial, ignore_errors=True)
     partial.mkdir(parents=True)
     write_tensors(partial / "network.safetensors", dict(run.network.state_dict()))
-    write_tensors(partial / "optimizer.safetensors", _optimizer_tensors(run))
+    write_tensors(partial / "optimizer.safetensors", adam_tensors(run.optimizer, run.network))
     if baseline := run.baseline.state():
         write_tensors(partial / "baseline.safetensors", baseline)
     write_json(partial / "state.json", RunState(run.update, round(seconds, 1), run.history))
@@ -211,39 +203,3 @@ def _entries(folder: Path) -> list[str]:
 
 def _name(update: int) -> str:
     return f"{update:08d}"
-
-
-def _optimizer_tensors(run: Reinforce) -> dict[str, torch.Tensor]:
-    tensors = {}
-    for name, parameter in run.network.named_parameters():
-        for key, value in run.optimizer.state.get(parameter, {}).items():
-            tensors[f"{name}/{key}"] = value
-    return tensors
-
-
-def _load_optimizer(run: Reinforce, path: Path, update: int) -> None:
-    tensors = read_tensors(path)
-    for name, parameter in run.network.named_parameters():
-        state = {key: tensors.pop(f"{name}/{key}") for key in MOMENTS if f"{name}/{key}" in tensors}
-        # Adam knows nothing of what has had no gradient: before the first update, or of robots that never decided.
-        if not state and (update == 0 or run.config.sharing != "shared"):
-            continue
-        for key, shape in zip(MOMENTS, ((), parameter.shape, parameter.shape), strict=True):
-            if key not in state:
-                raise ConfigError(f"{path}: {name}/{key} is missing; the checkpoint is damaged")
-            value = state[key]
-            if value.dtype != torch.float32 or value.shape != shape or not torch.isfinite(value).all():
-                raise ConfigError(
-                    f"{path}: {name}/{key} is no finite float32 tensor of shape {tuple(shape)}; "
-                    "the checkpoint is damaged"
-                )
-        if not 1 <= float(state["step"]) <= update or (state["exp_avg_sq"] < 0).any():
-            raise ConfigError(f"{path}: {name} has impossible moments; the checkpoint is damaged")
-        # Adam keeps its step counter on the CPU, its moments beside the parameter.
-        run.optimizer.state[parameter] = {
-            key: value if key == "step" else value.to(parameter.device) for key, value in state.items()
-        }
-    if tensors:
-        raise ConfigError(f"{path}: tensor {next(iter(tensors))!r} belongs to no weight; the checkpoint is damaged")
-    if update and not run.optimizer.state:
-        raise ConfigError(f"{path}: there is nothing in it; the checkpoint is damaged")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import Mixture, ScenarioGenerator, TaptcGenerator, UniformGenerator
 from mrta_zoo.train.config import TrainConfig
 
@@ -42,3 +43,18 @@ def training_generator(config: TrainConfig, tasks: int) -> ScenarioGenerator:
         return uniform
     wide = TaptcGenerator(tasks=size, robots=robots, capacity="random", latest=(210.0, 320.0), min_deadline=20.0)
     return Mixture((taptc, wide, uniform), (0.4, 0.2, 0.4))
+
+
+def check_distribution(config: TrainConfig) -> None:
+    """Make sure that scenarios of every size can be drawn, for robots that there are networks for.
+
+    Raises:
+        ConfigError: if a size is out of range, or there is to be a network for each kind of robots and any is drawn.
+    """
+    for tasks in config.tasks:
+        training_generator(config, tasks)
+    if config.sharing == "by-capacity" and config.generator != "taptc":
+        raise ConfigError(
+            f"sharing is 'by-capacity', a network for each of a few kinds of robots, and generator "
+            f"{config.generator!r} draws any capacity; expected generator taptc, or one of your own"
+        )

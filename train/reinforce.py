@@ -7,10 +7,8 @@ in a few large batches.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 import torch
@@ -20,24 +18,22 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import ScenarioGenerator, draw_scenario
 from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.neural.capam.candidate_decoder import CandidateDecoder
-from mrta_zoo.policies.neural.policy import load_policy
 from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import Network, build_network
 from mrta_zoo.policies.neural.temperature import tempered
-from mrta_zoo.policies.neural.weights import load_state
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.train.baselines import Baseline, build_baseline
 from mrta_zoo.train.config import TrainConfig
-from mrta_zoo.train.distribution import draw_size, most_robots, training_generator
+from mrta_zoo.train.distribution import check_distribution, draw_size, most_robots, training_generator
 from mrta_zoo.train.gradients import accumulate_gradients
 from mrta_zoo.train.imitation.experts import ExpertPlan
 from mrta_zoo.train.imitation.imitator import Imitator
+from mrta_zoo.train.initial import load_initial
 from mrta_zoo.train.objective import OBJECTIVES, Objective, checked
 from mrta_zoo.train.precision import autocast, quick_attention
 from mrta_zoo.train.scenarios import Drawn, draws
+from mrta_zoo.train.schedule import cosine, learning_rate
 
-WARM_UP = 20
-"""Gradient steps over which the step size grows to what it should be."""
 VALIDATION = 1
 """Tag of the stream of random numbers that draws the validation scenarios; training draws from stream 0."""
 
@@ -114,18 +110,12 @@ class Reinforce:
         self.generator = generator
         self.objective = OBJECTIVES[config.objective] if objective is None else checked(objective)
         if generator is None:
-            for tasks in config.tasks:
-                training_generator(config, tasks)  # now rather than at the first update
-        if generator is None and config.sharing == "by-capacity" and config.generator != "taptc":
-            raise ConfigError(
-                f"sharing is 'by-capacity', a network for each of a few kinds of robots, and generator "
-                f"{config.generator!r} draws any capacity; expected generator taptc, or one of your own"
-            )
+            check_distribution(config)  # now rather than at the first update
         self.network: Network = build_network(
             config.network, config.sharing, most_robots(config), config.seed, config.kinds
         )
         if config.initial:
-            self._start_from(config.initial)
+            load_initial(self.network, config)
         self.network.to(self.device)
         if options.compiled:
             for module in self.network.modules():
@@ -171,7 +161,7 @@ class Reinforce:
         if self.update == self.config.imitation_updates:
             self.optimizer.state.clear()  # gradients of REINFORCE are of another size
             self._imitator.release()
-        rate = self._learning_rate()
+        rate = learning_rate(self.config, self.update)
         for group in self.optimizer.param_groups:
             group["lr"] = rate
         self.optimizer.zero_grad(set_to_none=True)
@@ -204,7 +194,7 @@ class Reinforce:
         advantage = self.baseline.advantage(scenarios, loss).float()
         if config.normalise:
             advantage = advantage / (advantage.std() + 1e-6)
-        entropy = config.entropy * self._cosine()
+        entropy = config.entropy * cosine(config, self.update)
         accumulate_gradients(policy, scenarios, rollout.segments, advantage, entropy, config.precision)
         return float(loss.mean()), sum(int(segment.live.sum()) for segment in rollout.segments)
 
@@ -237,19 +227,6 @@ class Reinforce:
             if self.update % self.config.epoch == 0 or self.update == self.config.total_updates:
                 yield self.validate()
 
-    def _start_from(self, initial: str) -> None:
-        policy, config = load_policy(initial), self.config
-        info = policy.info
-        differences = info.network.differences(config.network)
-        if info.sharing != config.sharing:
-            differences = {"sharing": (info.sharing, config.sharing), **differences}
-        if differences:
-            told = ", ".join(f"{name} {theirs} (the run: {mine})" for name, (theirs, mine) in differences.items())
-            raise ConfigError(f"initial is {initial!r}, which has {told}; expected a policy like the run's")
-        if info.sharing == "by-capacity" and info.kinds != config.kinds:
-            raise ConfigError(f"initial is {initial!r}, for kinds {info.kinds}; the run is for kinds {config.kinds}")
-        load_state(self.network, dict(policy.network.state_dict()), Path(initial))
-
     def set_plans(self, plans: Sequence[ExpertPlan]) -> None:
         """Give the plans to imitate, which must be there before the first step if there is to be imitation.
 
@@ -269,23 +246,6 @@ class Reinforce:
     def _draw(self, rng: np.random.Generator) -> Scenario:
         generator = self.generator or training_generator(self.config, draw_size(self.config, rng))
         return draw_scenario(generator, rng)
-
-    def _learning_rate(self) -> float:
-        config, done = self.config, self.update
-        if self.imitates:
-            first, last = config.imitation_learning_rate, config.imitation_learning_rate / 10
-        else:
-            first, last, done = config.learning_rate, config.final_learning_rate, done - config.imitation_updates
-        return last + (first * min(1.0, (done + 1) / WARM_UP) - last) * self._cosine()
-
-    def _cosine(self) -> float:
-        """From 1 at the beginning of imitation, and again of REINFORCE, to 0 at its end."""
-        config = self.config
-        if self.imitates:
-            progress = self.update / config.imitation_updates
-        else:
-            progress = (self.update - config.imitation_updates) / config.updates
-        return (1 + math.cos(math.pi * progress)) / 2
 
 
 def _device(name: str) -> torch.device:

@@ -5,29 +5,24 @@ Nothing is ever unpickled, so a policy from a stranger can be loaded safely.
 
 from __future__ import annotations
 
-import json
-import os
-from dataclasses import dataclass, field, fields, is_dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal, TypeVar, get_type_hints
+from typing import Any, Literal
 
-import msgspec
 import torch
 from safetensors import SafetensorError
 from safetensors.torch import load_file, save
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.atomic import replacing
+from mrta_zoo.io.dataclass_json import read_json, write_json
 from mrta_zoo.io.paths import check_no_url
-from mrta_zoo.io.source import read_text
 from mrta_zoo.io.stand_ins import why_unreadable
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.policy_files import info_file
 from mrta_zoo.policies.neural.sharing import USUAL_KINDS, Network, Sharing, build_network
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.wording import counted
-
-T = TypeVar("T")
 
 FLOATS = (torch.float16, torch.bfloat16, torch.float32, torch.float64)
 """What weights may be saved as."""
@@ -135,40 +130,6 @@ def read_tensors(path: Path) -> dict[str, torch.Tensor]:
         raise ConfigError(f"{path}: no such file; expected weights in a .safetensors file") from None
     except (SafetensorError, OSError, ValueError) as error:
         raise ConfigError(f"{path}: not a readable safetensors file{why_unreadable(path, error)}") from None
-
-
-def write_json(path: Path, value: Any) -> None:
-    """Write a dataclass as indented JSON, through `replacing`."""
-    with replacing(path) as partial:
-        partial.write_text(json.dumps(msgspec.to_builtins(value), indent=2) + "\n", encoding="utf-8")
-
-
-def read_json(path: Path, of: type[T]) -> T:
-    """Read a dataclass back from JSON, strictly: unknown fields are errors, too.
-
-    Raises:
-        ConfigError: if the file is missing or malformed.
-    """
-    if not os.path.lexists(path):
-        raise ConfigError(f"{path}: no such file; expected the JSON that belongs to the weights")
-    try:
-        value = msgspec.json.decode(read_text(path, ConfigError, "the JSON of a policy or a training run"))
-        if isinstance(value, dict):
-            _refuse_unknown(value, of, path)
-        return msgspec.convert(value, of)
-    except (msgspec.MsgspecError, RecursionError) as error:
-        raise ConfigError(f"{path}: {error}") from None
-
-
-def _refuse_unknown(value: dict[str, Any], of: type, path: Path) -> None:
-    """msgspec ignores what a dataclass has no field for; a misspelt field must not pass silently."""
-    hints = get_type_hints(of)
-    known = {each.name for each in fields(of)}
-    for name, inner in value.items():
-        if name not in known:
-            raise ConfigError(f"{path}: unknown field {name!r}; expected some of {', '.join(sorted(known))}")
-        if is_dataclass(hints[name]) and isinstance(inner, dict):
-            _refuse_unknown(inner, hints[name], path)
 
 
 def load_state(network: Network, tensors: dict[str, torch.Tensor], path: Path) -> None:

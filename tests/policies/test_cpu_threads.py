@@ -138,7 +138,7 @@ def test_a_policy(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_network_that_other_libraries_train(monkeypatch: pytest.MonkeyPatch) -> None:
     module = build("capam", 0, 0, seed=0)
-    counts = watched(monkeypatch, actor_critic.Moments, "of_tables")
+    counts = watched(monkeypatch, actor_critic.DecisionStates, "of_tables")
     values = watched(monkeypatch, module.critic, "forward")
     env = mrta_v0.env(scenario=small_scenario())
     env.reset(seed=1)
