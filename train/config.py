@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 from mrta_zoo.bounds import MOST, check_seed
 from mrta_zoo.errors import ConfigError
@@ -16,6 +16,19 @@ from mrta_zoo.train.precision import Precision
 BaselineName = Literal["samples", "rollout", "exponential"]
 ObjectiveName = Literal["cost", "completion", "relative"]
 GeneratorName = Literal["taptc", "uniform", "mixture"]
+NAMES: dict[str, Any] = {
+    "baseline": BaselineName, "objective": ObjectiveName, "generator": GeneratorName, "sharing": Sharing,
+    "mask_rule": MaskRule, "precision": Precision,
+}  # fmt: skip
+"""Settings that are one of a few names."""
+LEAST = {
+    1: (
+        "reference_tasks", "min_robots", "scenarios", "samples", "updates", "epoch", "keep_checkpoints",
+        "imitation_batch",
+    ),
+    0: ("imitation_plans", "imitation_updates", "imitation_decisions"),
+}  # fmt: skip
+"""Settings that are whole numbers, by the least that they may be."""
 MOST_DECISIONS = 10_000
 """Far more than a plan has."""
 
@@ -119,63 +132,57 @@ class TrainConfig:
         return self.imitation_updates + self.updates
 
     def __post_init__(self) -> None:
-        whole = (
-            "reference_tasks",
-            "min_robots",
-            "scenarios",
-            "samples",
-            "updates",
-            "epoch",
-            "keep_checkpoints",
-            "imitation_batch",
-        )
-        for name in whole:
-            if getattr(self, name) < 1:
-                raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 1")
-        for name in ("scenarios", "samples", "validation_scenarios", "imitation_batch"):
-            if getattr(self, name) > MOST:  # whose memory would run out, sooner or later
-                raise ConfigError(f"{name} is {getattr(self, name)}; expected at most {MOST}")
-        if not self.tasks or min(self.tasks) < 1:
-            raise ConfigError(f"tasks is {self.tasks}; expected one or more whole numbers >= 1")
-        weights = self.task_weights
-        if weights and (len(weights) != len(self.tasks) or not all(0 < weight < math.inf for weight in weights)):
-            raise ConfigError(f"task_weights is {weights}; expected a number > 0 for each of tasks")
-        for name in ("imitation_plans", "imitation_updates", "imitation_decisions"):
-            if getattr(self, name) < 0:
-                raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= 0")
-        if self.imitation_decisions > MOST_DECISIONS:
-            raise ConfigError(f"imitation_decisions is {self.imitation_decisions}; expected at most {MOST_DECISIONS:,}")
+        self._check_counts()
+        self._check_numbers()
+        self._check_names()
         if self.imitation_updates and self.imitation_plans < self.imitation_batch:
             raise ConfigError(
                 f"imitation_plans is {self.imitation_plans}; expected at least imitation_batch, {self.imitation_batch}"
             )
+        if self.max_robots < self.min_robots:
+            raise ConfigError(f"max_robots is {self.max_robots}; expected at least min_robots, {self.min_robots}")
+        if self.normalise and self.scenarios * self.samples < 2:
+            raise ConfigError("normalise compares the missions of an update; scenarios x samples is 1, expected >= 2")
+        if self.baseline == "samples" and self.samples < 2:
+            raise ConfigError("the 'samples' baseline compares samples of a scenario; samples is 1, expected >= 2")
+
+    def _check_counts(self) -> None:
+        for least, names in LEAST.items():
+            for name in names:
+                if getattr(self, name) < least:
+                    raise ConfigError(f"{name} is {getattr(self, name)}; expected a whole number >= {least}")
+        if not self.tasks or min(self.tasks) < 1:
+            raise ConfigError(f"tasks is {self.tasks}; expected one or more whole numbers >= 1")
+        if self.imitation_decisions > MOST_DECISIONS:
+            raise ConfigError(f"imitation_decisions is {self.imitation_decisions}; expected at most {MOST_DECISIONS:,}")
+        if self.validation_scenarios < 2:
+            raise ConfigError(f"validation_scenarios is {self.validation_scenarios}; expected at least 2")
+        for name in ("scenarios", "samples", "validation_scenarios", "imitation_batch"):
+            if getattr(self, name) > MOST:  # whose memory would run out, sooner or later
+                raise ConfigError(f"{name} is {getattr(self, name)}; expected at most {MOST}")
+        check_seed(self.seed)
+
+    def _check_numbers(self) -> None:
+        weights = self.task_weights
+        if weights and (len(weights) != len(self.tasks) or not all(0 < weight < math.inf for weight in weights)):
+            raise ConfigError(f"task_weights is {weights}; expected a number > 0 for each of tasks")
         for name in ("learning_rate", "imitation_learning_rate", "final_learning_rate", "clip_norm"):
             if not 0 < getattr(self, name) < math.inf:
                 raise ConfigError(f"{name} is {getattr(self, name)}; expected a number > 0")
         if not 1e-6 <= self.temperature <= 1e6:  # what float32 can bear
             raise ConfigError(f"temperature is {self.temperature}; expected a number from 1e-6 to 1e6, such as 0.5")
-        if self.max_robots < self.min_robots:
-            raise ConfigError(f"max_robots is {self.max_robots}; expected at least min_robots, {self.min_robots}")
-        if self.validation_scenarios < 2:
-            raise ConfigError(f"validation_scenarios is {self.validation_scenarios}; expected at least 2")
         if not 0 < self.significance < 1:
             raise ConfigError(f"significance is {self.significance}; expected a number between 0 and 1")
         if not 0 <= self.baseline_decay < 1:
             raise ConfigError(f"baseline_decay is {self.baseline_decay}; expected a number >= 0 and < 1")
         if not 0 <= self.entropy < math.inf:
             raise ConfigError(f"entropy is {self.entropy}; expected a number >= 0")
-        check_seed(self.seed)
         check_kinds(self.kinds)
-        if self.normalise and self.scenarios * self.samples < 2:
-            raise ConfigError("normalise compares the missions of an update; scenarios x samples is 1, expected >= 2")
-        for name, names in (
-            ("baseline", BaselineName), ("objective", ObjectiveName), ("generator", GeneratorName),
-            ("sharing", Sharing), ("mask_rule", MaskRule), ("precision", Precision),
-        ):  # fmt: skip
+
+    def _check_names(self) -> None:
+        for name, names in NAMES.items():
             if getattr(self, name) not in get_args(names):
                 choices = ", ".join(get_args(names))
                 raise ConfigError(f"{name} is {getattr(self, name)!r}; expected one of {choices}")
         if self.device not in ("cpu", "cuda", "auto"):
             raise ConfigError(f"device is {self.device!r}; expected cpu, cuda or auto")
-        if self.baseline == "samples" and self.samples < 2:
-            raise ConfigError("the 'samples' baseline compares samples of a scenario; samples is 1, expected >= 2")

@@ -52,18 +52,24 @@ def accumulate_gradients(
     for segment in segments:
         with autocast(scenarios.device, precision):
             log_probs = network(select(cut, segment.scenarios), segment.states, segment.features)
-        chosen = log_probs.gather(2, segment.actions[..., None]).squeeze(2)
-        weight = advantage[segment.scenarios][:, segment.sample]
-        # Where a plan takes a task that is no candidate there is nothing to learn.
-        live = segment.live & torch.isfinite(chosen)
-        loss = (weight * chosen.masked_fill(~live, 0.0)).sum()
-        if entropy:
-            negative = (log_probs.exp() * log_probs.masked_fill(torch.isinf(log_probs), 0.0)).sum(-1)
-            loss = loss + entropy * negative.masked_fill(~live, 0.0).sum()
+        loss = _surrogate(log_probs, segment, advantage, entropy)
         loss = loss / advantage.numel()
         loss.backward()
         total += loss.detach()
     # None where nothing was decided by it: by the networks of robots that no scenario has, or by any.
-    used = [(of, leaf.grad) for of, leaf in leaves if leaf.grad is not None]
+    used = [(of, cut_off.grad) for of, cut_off in leaves if cut_off.grad is not None]
     torch.autograd.backward([of for of, _ in used], [gradient for _, gradient in used])
     return float(total)
+
+
+def _surrogate(log_probs: Tensor, segment: Segment, advantage: Tensor, entropy: float) -> Tensor:
+    """The sum over a segment's decisions of advantage · log-probability, less the entropy bonus."""
+    chosen = log_probs.gather(2, segment.actions[..., None]).squeeze(2)
+    weight = advantage[segment.scenarios][:, segment.sample]
+    # Where a plan takes a task that is no candidate there is nothing to learn.
+    live = segment.live & torch.isfinite(chosen)
+    loss: Tensor = (weight * chosen.masked_fill(~live, 0.0)).sum()
+    if entropy:
+        negative = (log_probs.exp() * log_probs.masked_fill(torch.isinf(log_probs), 0.0)).sum(-1)
+        loss = loss + entropy * negative.masked_fill(~live, 0.0).sum()
+    return loss

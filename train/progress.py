@@ -6,7 +6,7 @@ import time
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from mrta_zoo.digits import share
 from mrta_zoo.errors import ConfigError
@@ -31,33 +31,15 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
         seconds: time already spent on it.
         console: where to show progress; standard error by default.
     """
-    console = console or messages_console()
-    config = run.config
-    parameters = sum(parameter.numel() for parameter in run.network.parameters())
-    total, imitated = config.total_updates, ""
-    if config.imitation_updates:
-        imitated = f"{config.imitation_updates} of {counted(config.imitation_batch, 'plan')}, then "
-    begins = f"goes on after update {run.update} of {total}" if run.update else counted(total, "update")
-    say(
-        console,
-        f"{folder}: {begins}, {imitated}of {config.scenarios} x {config.samples} episodes on {run.device}, "
-        f"{parameters:,} parameters; validation on {counted(config.validation_scenarios, 'scenario', form=',')}",
-    )
+    console, config = console or messages_console(), run.config
+    say(console, f"{folder}: {_what_it_does(run)}")
     begun = time.perf_counter() - seconds
     first = run.update
     per_update = config.scenarios * config.samples
-    columns = (
-        TextColumn("update {task.completed}/{task.total}"),
-        BarColumn(bar_width=None),
-        TextColumn("{task.fields[rate]:.0f} episodes/s"),
-        TextColumn("completion {task.fields[completion]}"),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-    )
     with (
         # What an earlier session has shown beyond its last checkpoint comes again.
         EventLog(folder / "tensorboard", first + 1 if run.history else 0, lambda why: say(console, why)) as board,
-        Progress(*fitting(columns, console), console=console, disable=not console.is_terminal) as progress,
+        Progress(*fitting(_columns(), console), console=console, disable=not console.is_terminal) as progress,
     ):
         bar = progress.add_task("", total=config.total_updates, completed=first, rate=0.0, completion="-")
         session = time.perf_counter()
@@ -85,6 +67,30 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
         console,
         f"Best validation completion {share(best.completion, 2)} % at update {best.update}; "
         f"the policy is in {folder / 'policy.safetensors'}",
+    )
+
+
+def _columns() -> tuple[ProgressColumn, ...]:
+    return (
+        TextColumn("update {task.completed}/{task.total}"),
+        BarColumn(bar_width=None),
+        TextColumn("{task.fields[rate]:.0f} episodes/s"),
+        TextColumn("completion {task.fields[completion]}"),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+
+
+def _what_it_does(run: Reinforce) -> str:
+    """What is ahead of a run, in a line."""
+    config, total, imitated = run.config, run.config.total_updates, ""
+    parameters = sum(parameter.numel() for parameter in run.network.parameters())
+    if config.imitation_updates:
+        imitated = f"{config.imitation_updates} of {counted(config.imitation_batch, 'plan')}, then "
+    begins = f"goes on after update {run.update} of {total}" if run.update else counted(total, "update")
+    return (
+        f"{begins}, {imitated}of {config.scenarios} x {config.samples} episodes on {run.device}, "
+        f"{parameters:,} parameters; validation on {counted(config.validation_scenarios, 'scenario', form=',')}"
     )
 
 

@@ -10,32 +10,27 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-import numpy as np
 import torch
 
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.generators import ScenarioGenerator, draw_scenario
+from mrta_zoo.generators import ScenarioGenerator
 from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.neural.capam.candidate_decoder import CandidateDecoder
 from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import Network, build_network
 from mrta_zoo.policies.neural.temperature import tempered
-from mrta_zoo.scenario import Scenario
 from mrta_zoo.train.baselines import Baseline, build_baseline
 from mrta_zoo.train.config import TrainConfig
-from mrta_zoo.train.distribution import check_distribution, draw_size, most_robots, training_generator
+from mrta_zoo.train.distribution import check_distribution, most_robots
 from mrta_zoo.train.gradients import accumulate_gradients
 from mrta_zoo.train.imitation.experts import ExpertPlan
 from mrta_zoo.train.imitation.imitator import Imitator
 from mrta_zoo.train.initial import load_initial
 from mrta_zoo.train.objective import OBJECTIVES, Objective, checked
 from mrta_zoo.train.precision import autocast, quick_attention
-from mrta_zoo.train.scenarios import Drawn, draws
+from mrta_zoo.train.scenarios import Drawn, draw_validation, draws
 from mrta_zoo.train.schedule import cosine, learning_rate
-
-VALIDATION = 1
-"""Tag of the stream of random numbers that draws the validation scenarios; training draws from stream 0."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,9 +130,7 @@ class Reinforce:
     def validation_batch(self) -> ScenarioBatch:
         """The validation scenarios, the same all through the run."""
         if self._validation is None:
-            rng = np.random.default_rng((self.config.seed, VALIDATION))
-            drawn = [self._draw(rng) for _ in range(self.config.validation_scenarios)]
-            self._validation = ScenarioBatch.of(drawn, self.device, mask_rule=self.config.mask_rule)
+            self._validation = draw_validation(self.config, self.generator).to(self.device)
         return self._validation
 
     @property
@@ -242,10 +235,6 @@ class Reinforce:
             self._draws = draws(self.config, self.generator, self.update, self._workers)
             drawn = next(self._draws)
         return drawn
-
-    def _draw(self, rng: np.random.Generator) -> Scenario:
-        generator = self.generator or training_generator(self.config, draw_size(self.config, rng))
-        return draw_scenario(generator, rng)
 
 
 def _device(name: str) -> torch.device:

@@ -1,4 +1,4 @@
-"""The scenarios of each update, drawn ahead of time by other processes if there are any to spare."""
+"""The scenarios of a run: those of each update, which other processes may draw ahead of time, and for validation."""
 
 from __future__ import annotations
 
@@ -8,13 +8,12 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from itertools import count
 
-import numpy as np
-
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.generators import ScenarioGenerator, draw_scenario
 from mrta_zoo.train.child_process import pool_of
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, team, training_generator
+from mrta_zoo.train.streams import Stream, random_numbers
 
 AHEAD = 4
 """Updates that each worker process draws ahead."""
@@ -31,7 +30,7 @@ class Drawn:
 
 def draw(config: TrainConfig, generator: ScenarioGenerator | None, update: int) -> Drawn:
     """The scenarios of an update of REINFORCE, on the CPU; they follow from the run's seed and the update's number."""
-    rng = np.random.default_rng((config.seed, 0, update))
+    rng = random_numbers(config.seed, Stream.UPDATES, update)
     if generator is None:
         tasks = draw_size(config, rng)
         generator, most_robots = training_generator(config, tasks), team(config, tasks)[1]
@@ -43,6 +42,16 @@ def draw(config: TrainConfig, generator: ScenarioGenerator | None, update: int) 
         mask_rule=config.mask_rule,
     )
     return Drawn(update, scenarios, int(rng.integers(2**63)))
+
+
+def draw_validation(config: TrainConfig, generator: ScenarioGenerator | None) -> ScenarioBatch:
+    """The scenarios that a run is validated on, on the CPU; `generator` as for `draw`."""
+    rng = random_numbers(config.seed, Stream.VALIDATION)
+    drawn = [
+        draw_scenario(generator or training_generator(config, draw_size(config, rng)), rng)
+        for _ in range(config.validation_scenarios)
+    ]
+    return ScenarioBatch.of(drawn, mask_rule=config.mask_rule)
 
 
 def draws(

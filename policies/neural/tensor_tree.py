@@ -27,7 +27,7 @@ def tree_map(function: Callable[..., Tensor], tree: Tree, *others: Tree) -> Tree
     elif is_dataclass(tree) and not isinstance(tree, type):
         columns = ([getattr(each, field.name) for each in (tree, *others)] for field in fields(tree))
         found = type(tree)(*(tree_map(function, *column) for column in columns))
-    return found
+    return found  # type: ignore[no-any-return]
 
 
 def select(tree: Tree, index: Tensor) -> Tree:

@@ -25,10 +25,9 @@ from mrta_zoo.scenario import Scenario
 from mrta_zoo.train.child_process import pool_of
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, training_generator
+from mrta_zoo.train.streams import Stream, random_numbers
 from mrta_zoo.verify import verify
 
-STREAM = 2
-"""Tag of the stream of random numbers that draws the scenarios of the plans; see `reinforce.VALIDATION`."""
 ITERATIONS_A_TASK = 24
 """How long the search (`EilsSolver`) looks for each plan: about 0.1 s with 100 tasks, within 1 % of its best."""
 SHARD = 500
@@ -60,7 +59,7 @@ class ExpertPlan:
 
 def expert_scenario(config: TrainConfig, number: int) -> Scenario:
     """The scenario of the plan of that number."""
-    rng = np.random.default_rng((config.seed, STREAM, number))
+    rng = random_numbers(config.seed, Stream.PLANS, number)
     return training_generator(config, draw_size(config, rng))(rng)
 
 

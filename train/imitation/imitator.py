@@ -18,13 +18,12 @@ from mrta_zoo.train.gradients import accumulate_gradients
 from mrta_zoo.train.imitation.decision_pool import DecisionPool
 from mrta_zoo.train.imitation.decisions import PlanBatch, follow, turned
 from mrta_zoo.train.imitation.experts import ExpertPlan
+from mrta_zoo.train.streams import Stream, random_numbers
 from mrta_zoo.wording import counted
 
 POOL_STEPS, POOL_PLANS = 96, 8192
 """For how many steps a pool of decisions serves, and of how many plans it is at most, all sizes of scenarios together.
 It takes some 3 kB a decision."""
-POOL = 3
-"""Tag of the stream of random numbers that draws the pools' plans; see `reinforce.VALIDATION`."""
 
 
 class Imitator:
@@ -72,7 +71,7 @@ class Imitator:
         config = self._config
         if not self._plans:
             raise ConfigError("there are no plans to imitate; give them (set_plans), or set imitation_updates to 0")
-        rng = np.random.default_rng((config.seed, 0, update))
+        rng = random_numbers(config.seed, Stream.UPDATES, update)
         tasks = draw_size(config, rng)
         if config.imitation_decisions:
             drawing = torch.Generator().manual_seed(int(rng.integers(2**63)))
@@ -109,7 +108,7 @@ class Imitator:
             weights = dict(zip(config.tasks, config.task_weights or [1.0] * len(config.tasks), strict=True))
             plans = min(POOL_PLANS, POOL_STEPS * config.imitation_batch)  # no more than are drawn
             count = max(config.imitation_batch, round(plans * weights[tasks] / sum(weights.values())))
-            rng = np.random.default_rng((config.seed, POOL, number, tasks))
+            rng = random_numbers(config.seed, Stream.POOLS, number, tasks)
             rows = self._some(tasks, count, rng)
             pools[tasks] = DecisionPool(*self._followed(tasks, rows, rng.integers(8, size=count)))
         return pools[tasks]
