@@ -93,7 +93,7 @@ def small_problem() -> Any:
 
 
 def main(updates: int = 100, seed: int = 0) -> None:
-    """Train on the small problem and print what came of it.
+    """Train on the small problem and print the result.
 
     Args:
         updates: gradient steps.

@@ -57,13 +57,13 @@ class TrainConfig:
         imitation_plans: number of plans to imitate; they are made and kept in files of 500.
         imitation_batch: plans a step.
         imitation_decisions: decisions of each of them, at most 10,000, drawn at random from a pool of up to 8,192 plans
-            that is made anew now and then (`mrta_zoo.train.imitation.imitator`), quicker on a GPU; 0 for all, and
-            no pool.
+            that is replaced from time to time (`mrta_zoo.train.imitation.imitator`), which is quicker on a GPU; 0
+            takes all decisions, without a pool.
         imitation_learning_rate: Adam's step size at the start of the imitation; falls to a tenth along a cosine.
         objective: what to minimise: "cost" (Eq. 1 of the paper, divided by the number of tasks), one minus the
             completion rate ("completion"), or −ln(1 + number of completed tasks) ("relative"), for which missions
             with few robots, of which no plan completes much, count as much as others.
-        baseline: what a mission's outcome is compared with: the mean of the other samples of its scenario
+        baseline: what a mission's loss is compared with: the mean of the other samples of its scenario
             ("samples"), the greedy rollout of the best policy so far, replaced when a paired t-test says that
             the present one is better ("rollout", the paper's), or a moving average over updates ("exponential").
         baseline_decay: how much of the "exponential" baseline an update leaves as it was.
@@ -74,11 +74,11 @@ class TrainConfig:
         final_learning_rate: Adam's step size at the end, reached along a cosine.
         clip_norm: gradients are scaled down to at most this norm.
         normalise: whether advantages are divided by their standard deviation over the batch.
-        entropy: weight of an entropy bonus, per decision, at the start; falls to nothing along the same cosine. Without
-            it the policy is soon all but certain of what it does, and tries nothing else.
+        entropy: weight of an entropy bonus, per decision, at the start; falls to 0 along the same cosine. Without it
+            the policy soon becomes almost deterministic and stops exploring.
         temperature: REINFORCE samples from the probabilities p^(1/temperature), normalised, and improves these; from
-            1e-6 to 1e6. Below 1 it begins, after imitation, close to what the policy likes best, not with all that
-            imitation left open.
+            1e-6 to 1e6. Below 1, REINFORCE starts close to the policy's favourites after imitation instead of sampling
+            from everything that imitation left open.
         epoch: updates between two validations, each with a checkpoint, and with the baseline's t-test.
         validation_scenarios: number of validation scenarios, drawn once from the training distribution.
         significance: level of the baseline's t-test.

@@ -1,4 +1,4 @@
-"""A run's log for TensorBoard, without which the run goes on all the same."""
+"""A run's log for TensorBoard. A run goes on without it if it cannot be written."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from typing import Any
 
 
 class EventLog:
-    """Writes scalars for TensorBoard. What fails, as the disk is full, is told once, and then there is no more log.
+    """Writes scalars for TensorBoard. A failure, such as a full disk, is reported once and ends the log.
 
     Not `SummaryWriter`, whose thread ends with a traceback in that case.
 
     Args:
         folder: of the log; made if it does not exist.
-        purge_step: what earlier files of the folder hold from this step on is no longer shown.
-        tell: is told why there is no more log, in a sentence.
+        purge_step: TensorBoard no longer shows what earlier files of the folder hold from this step on.
+        tell: called with a sentence that says why the log ends.
     """
 
     def __init__(self, folder: Path, purge_step: int, tell: Callable[[str], None]) -> None:
@@ -34,7 +34,7 @@ class EventLog:
             self._try(lambda: self._write_scalars(step, scalars))
 
     def flush(self) -> None:
-        """Have all that was added on disk."""
+        """Write to disk all that was added."""
         if self._records is not None:
             self._try(self._records.flush)
 

@@ -23,8 +23,8 @@ def load_initial(network: Network, config: TrainConfig) -> None:
     if info.sharing != config.sharing:
         differences = {"sharing": (info.sharing, config.sharing), **differences}
     if differences:
-        told = ", ".join(f"{name} {theirs} (the run: {mine})" for name, (theirs, mine) in differences.items())
-        raise ConfigError(f"initial is {initial!r}, which has {told}; expected a policy like the run's")
+        listed = ", ".join(f"{name} {theirs} (the run: {mine})" for name, (theirs, mine) in differences.items())
+        raise ConfigError(f"initial is {initial!r}, which has {listed}; expected a policy like the run's")
     if info.sharing == "by-capacity" and info.kinds != config.kinds:
         raise ConfigError(f"initial is {initial!r}, for kinds {info.kinds}; the run is for kinds {config.kinds}")
     load_state(network, dict(policy.network.state_dict()), Path(initial))

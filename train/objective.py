@@ -1,4 +1,4 @@
-"""What training minimises, computed from the simulator's books and nowhere else."""
+"""What training minimises, computed from the simulator's own records."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ from mrta_zoo.train.schedule import cosine, learning_rate
 
 @dataclass(frozen=True, slots=True)
 class Update:
-    """What one gradient step saw."""
+    """One gradient step."""
 
     update: int
     loss: float
@@ -60,10 +60,10 @@ class Validation:
 
 @dataclass(frozen=True, slots=True)
 class RunOptions:
-    """What changes how long a run takes, but not what comes of it, up to rounding.
+    """Settings that change how long a run takes, but not its result, up to rounding.
 
     Attributes:
-        workers: processes that draw scenarios ahead of time, on a GPU; a CPU has nothing to spare.
+        workers: processes that draw scenarios ahead of time; used only with a GPU.
         compiled: whether to compile the layers of the candidate decoder.
     """
 
@@ -92,7 +92,7 @@ class Reinforce:
         Args:
             config: the run.
             generator: draws the scenarios; by default, as `config.generator` says.
-            options: what makes it quicker.
+            options: how fast it runs.
             objective: what to minimise, see `mrta_zoo.train.objective`; by default, as `config.objective` says.
 
         Raises:
@@ -193,7 +193,7 @@ class Reinforce:
 
     @few_threads()
     def validate(self) -> Validation:
-        """Greedy results now; gives the baseline its chance to change, and adds to the history."""
+        """Evaluate greedily, let the baseline change, and add to the history."""
         scenarios = self.validation_batch
         with autocast(self.device, self.config.precision), quick_attention(self.device):
             rollout = roll_out(self.network, scenarios, mask_rule=self.config.mask_rule)
@@ -229,7 +229,7 @@ class Reinforce:
         self._imitator.set_plans(plans)
 
     def _drawn(self) -> Drawn:
-        """What this update is made of: what is drawn next, unless the run was resumed or an update failed."""
+        """The input of this update; after a resume or a failed update it is not the next one drawn."""
         drawn = next(self._draws, None)
         if drawn is None or drawn.update != self.update:
             self._draws = draws(self.config, self.generator, self.update, self._workers)

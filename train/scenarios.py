@@ -21,7 +21,7 @@ AHEAD = 4
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """What one update is made of: scenarios of one size, and the seed of what is sampled on them."""
+    """The input of one update: scenarios of one size, and the seed with which missions are sampled."""
 
     update: int
     scenarios: ScenarioBatch
@@ -57,13 +57,13 @@ def draw_validation(config: TrainConfig, generator: ScenarioGenerator | None) ->
 def draws(
     config: TrainConfig, generator: ScenarioGenerator | None, first: int, workers: int = 0
 ) -> Generator[Drawn, None, None]:
-    """What each update is made of, from number `first` on, without end.
+    """The input of each update from number `first` on, without end.
 
     Args:
         config: the run.
         generator: draws the scenarios; None for the configuration's.
         first: number of an update.
-        workers: processes that draw ahead, which end when the generator is closed; 0 to draw when asked.
+        workers: processes that draw ahead; they end when this generator is closed. 0 draws here, one at a time.
 
     Raises:
         ConfigError: if one of the processes dies.

@@ -18,7 +18,7 @@ class ActorCritic(nn.Module):
     """Masked logits by a policy network, CapAM or any other that this package builds, and a value of its own.
 
     Observations are the environment's Dict form as tensors, ``{"observation": {"tasks", "robots", "ego", "mission"},
-    "action_mask"}``, every one with the same leading dimensions (…), such as none, a batch, or time × robots. In the
+    "action_mask"}``, all with the same leading dimensions (…): none, a batch, or time × robots, for example. In the
     parallel form the mask, and so the logits, have a column more, the no-op.
 
     On a CPU it uses one thread, as trained policies do. Gradients are computed by the loop that asks for them: put

@@ -25,7 +25,7 @@ def beam_search(
 ) -> Iterator[BatchMission]:
     """Missions as they are finished, in batches.
 
-    All unfinished missions take one decision a step. Of all that may come of them the `width` likeliest go on, by the
+    All unfinished missions take one decision per step. Of all continuations the `width` likeliest are kept, by the
     probability of all their decisions together; the first among equals. A finished mission is given out and makes room:
     left in the beam it would crowd out longer ones, since each decision makes a mission less likely.
 

@@ -74,7 +74,7 @@ def best_plan(network: Scorer, scenario: Scenario, how: Decoding) -> Plan:
 
 
 def _sample(network: Scorer, batch: ScenarioBatch, samples: int, how: Decoding, best: _Best) -> None:
-    """Draw `samples` missions of each scenario of the batch or, until the time is up, so many again and again.
+    """Draw `samples` missions of each scenario of the batch, once or, with a budget, until the time is up.
 
     Raises:
         OutOfTimeError: if it is up before a draw is finished.
@@ -121,7 +121,7 @@ class _Best:
         self._key = (-1, -math.inf)
 
     def offer(self, rollout: Rollout) -> None:
-        """Compare with what came of some missions."""
+        """Compare with the missions of a rollout."""
         self._offer(rollout.completed, rollout.cost, lambda row: rollout.plans[row])
 
     def offer_missions(self, missions: BatchMission) -> None:

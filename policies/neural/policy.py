@@ -39,7 +39,7 @@ UNCHANGING_MISSION = [MISSION_FEATURES.index(name) for name in ("crossing_ratio"
 
 @dataclass(frozen=True, slots=True)
 class Preferences:
-    """What a policy makes of one observation."""
+    """What a policy would do at one observation, and how likely each task is."""
 
     action: int
     """The task that it takes."""
@@ -81,7 +81,7 @@ class NeuralPolicy:
     def for_agent(self, agent: str) -> NeuralPolicy:
         """The policy that decides for one robot, the same object at each call.
 
-        Independent networks give a policy with that robot's network alone, which answers for whomever it is asked. A
+        Independent networks give a policy with that robot's network alone, whichever robot observes. A
         shared policy is this one; so is one by capacity, which reads in each observation what kind of robot acts.
 
         Raises:
@@ -255,7 +255,7 @@ def load_policy(name_or_path: str | Path, decode: Decode = "greedy", seed: int =
             f"there is no policy {str(name_or_path)!r}; expected one of {', '.join(pretrained_names())}, "
             "a .safetensors file, or the folder of a training run"
         )
-    check_name(name, str(path), "the policy's name", ConfigError)  # plans are signed with it
+    check_name(name, str(path), "the policy's name", ConfigError)  # stored in its plans as their method
     network, info = load_weights(path)
     return NeuralPolicy(network, info, name, decode, seed)
 

@@ -20,7 +20,7 @@ from mrta_zoo.policies.neural.tensor_tree import select, tree_map
 from mrta_zoo.rules import MaskRule
 
 SEGMENT = 12
-"""Decisions between two looks at which missions are over; those are dropped, so that no work is done for them."""
+"""Decisions between two checks of which missions are over; those are dropped, which saves their work."""
 
 NOT_FINITE = (
     "the network gives probabilities that are not finite: its weights are spoilt (did training diverge?), a feature or "
@@ -39,7 +39,7 @@ class Scorer(Protocol):
         """What it knows of S missions' tasks: a tree of tensors (`tensor_tree`) whose first dimension is S."""
 
     def features(self, encoding: Any, states: DecisionStates) -> Any:
-        """What scoring needs to know of these states besides, or None."""
+        """What scoring needs besides these states, or None."""
 
     def __call__(self, encoding: Any, states: DecisionStates, features: Any = None) -> Any:
         """(S, G, N) log-probabilities of choosing each task, as `AllocationNetwork.forward` gives them."""
@@ -52,7 +52,7 @@ class Segment:
     Attributes:
         scenarios: (S',) int64 which scenarios they belong to.
         states: what they were taken in, (S', Q, …).
-        features: what the network made of those states, or None.
+        features: what the network computed from those states, or None.
         actions: (S', Q) int64 the tasks chosen.
         live: (S', Q) bool, false where the mission was already over.
         sample: (Q,) int64 which of the G samples each belongs to.
@@ -85,7 +85,7 @@ class Segment:
 
 @dataclass(frozen=True, slots=True)
 class Rollout:
-    """What came of B = S · G missions; row k·G + g is sample g of scenario k.
+    """The outcome of B = S · G missions; row k·G + g is sample g of scenario k.
 
     Attributes:
         cost: (B,) float64, the objective, Eq. 1 of the paper.

@@ -12,12 +12,15 @@ Tree = TypeVar("Tree")
 
 
 def tree_map(function: Callable[..., Tensor], tree: Tree, *others: Tree) -> Tree:
-    """The tree of what a function makes of each tensor.
+    """Apply a function to each tensor of a tree, or to corresponding tensors of several.
 
     Args:
         function: takes a tensor of `tree` and the corresponding ones of `others`.
         tree: a tensor, a tuple, or a dataclass; whatever else it holds, such as None, stays as it is.
         others: trees of the same shape.
+
+    Returns:
+        a tree of the same shape.
     """
     found: Any = tree
     if isinstance(tree, Tensor):

@@ -51,7 +51,7 @@ Routes = tuple[tuple[int, ...], ...]
 
 @dataclass(frozen=True, slots=True)
 class ExpertPlan:
-    """A scenario and what the search made of it."""
+    """A scenario and the routes that the search found for it."""
 
     scenario: Scenario
     routes: Routes

@@ -22,8 +22,8 @@ from mrta_zoo.train.streams import Stream, random_numbers
 from mrta_zoo.wording import counted
 
 POOL_STEPS, POOL_PLANS = 96, 8192
-"""For how many steps a pool of decisions serves, and of how many plans it is at most, all sizes of scenarios together.
-It takes some 3 kB a decision."""
+"""Steps that a pool of decisions is used for, and the most plans that it holds, over all sizes of scenarios. A decision
+takes some 3 kB."""
 
 
 class Imitator:
@@ -87,7 +87,7 @@ class Imitator:
         return loss, decisions
 
     def _some(self, tasks: int, count: int, rng: np.random.Generator) -> npt.NDArray[np.int64]:
-        """The numbers of some of the plans."""
+        """Numbers of plans, drawn with replacement."""
         return rng.integers(len(self._plans[tasks]), size=count)
 
     def _followed(
@@ -99,7 +99,7 @@ class Imitator:
         return scenarios, follow(self._network, scenarios, plans.routes[chosen])
 
     def _pool(self, number: int, tasks: int) -> DecisionPool:
-        """The decisions with so many tasks that steps draw from at present."""
+        """The pool of that number, of scenarios with so many tasks."""
         config = self._config
         if self._pools[0] != number:
             self._pools = (number, {})

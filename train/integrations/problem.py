@@ -66,13 +66,13 @@ def in_aec_loop(policy: Policy) -> Planner:
 
 
 def completions(plan: Planner, episodes: int = 200) -> npt.NDArray[np.float64]:
-    """(episodes,) share of the tasks completed in each of so many unseen scenarios, by the verifier."""
+    """(episodes,) share of the tasks completed in each of as many unseen scenarios, by the verifier."""
     unseen = (Site()(np.random.default_rng(UNSEEN + episode)) for episode in range(episodes))
     return np.array([verify(scenario, plan(scenario)).completed / TASKS for scenario in unseen])
 
 
 def show(train: Callable[..., Any]) -> None:
-    """Command line of an integration: train, with the function's arguments as flags, and print what came of it."""
+    """Command line of an integration: train, with the function's arguments as flags, and print the result."""
     begun = time.perf_counter()
     trained = run(train, f"mrta_zoo.train.integrations.{Path(sys.argv[0]).stem}")
     took = time.perf_counter() - begun

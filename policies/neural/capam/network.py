@@ -75,13 +75,13 @@ class AllocationNetwork(nn.Module):
         return replace(self.surroundings(tasks), embeddings=self.decoder.encoded(embeddings))
 
     def surroundings(self, tasks: Tasks) -> Encoding:
-        """As much of an encoding as `features` needs, which takes no encoder: for those who only watch."""
+        """The part of an encoding that `features` needs; it does not run the encoder."""
         if isinstance(self.decoder, AttentionDecoder):
             return Encoding(tasks)
         return Encoding(tasks, neighbourhood=Neighbourhood.of(tasks))
 
     def features(self, encoding: Encoding, states: DecisionStates) -> Candidates | None:
-        """What `forward` needs to know of these states besides, or None; no gradients flow through it."""
+        """What `forward` needs besides these states, or None; no gradients flow through it."""
         if encoding.neighbourhood is None:
             return None
         with torch.no_grad():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +12,6 @@ import torch
 
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.classical.local_search.eils import EilsConfig, EilsSolver
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.capam.inputs import Tasks
@@ -24,7 +23,6 @@ from mrta_zoo.train.imitation import imitator
 from mrta_zoo.train.imitation.decisions import PlanBatch, follow
 from mrta_zoo.train.imitation.experts import ExpertPlan, expert_scenario
 from mrta_zoo.train.reinforce import Reinforce, Update, Validation
-from mrta_zoo.train.scenarios import Drawn, draw, draws
 
 ATTENTION = NetworkConfig(embedding=32, heads=4)
 CANDIDATES = replace(ATTENTION, decoder="candidates", decision_layers=1, candidates=10, peers=2)
@@ -194,34 +192,3 @@ def test_independent_networks_are_as_many_as_the_largest_team() -> None:
     )
     sizes = {run.step().decisions > 0 for _ in range(4)}
     assert sizes == {True}
-
-
-def same(one: Drawn, other: Drawn) -> bool:
-    tables = fields(ScenarioBatch)
-    return (one.update, one.seed) == (other.update, other.seed) and all(
-        torch.equal(getattr(one.scenarios, each.name), getattr(other.scenarios, each.name))
-        for each in tables
-        if each.name != "scales"
-    )
-
-
-def test_other_processes_draw_the_same_scenarios() -> None:
-    config = replace(TINY, imitation_updates=0, tasks=(10, 20), updates=3)
-    ahead = draws(config, None, 1, workers=2)
-    drawn = [next(ahead) for _ in range(4)]  # beyond the last update, too: a run may be made longer
-    ahead.close()
-    assert all(same(*each) for each in zip(drawn, draws(config, None, 1), strict=False))
-    assert not same(drawn[0], drawn[1])
-
-
-def test_each_update_has_its_own_scenarios_whatever_came_before() -> None:
-    run = Reinforce(replace(TINY, imitation_updates=0, tasks=(10, 20), updates=5))
-    for update in (0, 1, 1, 4, 2):  # as they come, after an update that failed, and resumed elsewhere
-        run.update = update
-        assert same(run._drawn(), draw(run.config, None, update))
-
-
-def test_a_given_generator_draws_the_scenarios() -> None:
-    generator = UniformGenerator(tasks=(7, 7), robots=(2, 2))
-    scenarios = next(draws(TINY, generator, 0)).scenarios
-    assert (len(scenarios), scenarios.num_tasks, scenarios.num_robots) == (2, 7, 2)
