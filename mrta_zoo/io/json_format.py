@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
 
 from mrta_zoo.errors import PlanError, ScenarioError
-from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, in_id_order
+from mrta_zoo.io.parts import MapRow, Part, Row, in_id_order, robot_rows, task_rows
 from mrta_zoo.io.paths import suffix_of
 from mrta_zoo.io.source import StrPath, read_text
 from mrta_zoo.io.strict_json import read_document, write_document
 from mrta_zoo.left_out import Reason
 from mrta_zoo.plan import Plan
-from mrta_zoo.scenario import Scenario
+from mrta_zoo.quantities import Who
+from mrta_zoo.scenario import Scenario, quantities_of
 from mrta_zoo.wording import composed
 
 Positive = Annotated[float, Meta(gt=0)]
@@ -41,32 +42,46 @@ class MapJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     y: float | None = None
 
 
-class TaskJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One task: its place, the latest finish that counts, the work to be done, its name, and its id.
+def _row_json(title: str, description: str, who: Who) -> type[msgspec.Struct]:
+    """The form of a task or robot: a place, the quantities of the field table, a name and an id."""
+    quantities = [
+        (each.name, Positive if each.positive else NonNegative, *(() if each.default is None else (each.default,)))
+        for each in quantities_of(who)
+    ]
+    return msgspec.defstruct(
+        title,
+        [("x", float), ("y", float), *quantities, ("name", Name | None, None), ("id", Name | None, None)],
+        namespace={"__doc__": description},
+        module=__name__,
+        frozen=True,
+        forbid_unknown_fields=True,
+    )
+
+
+if TYPE_CHECKING:
+
+    class RowJson(msgspec.Struct):
+        x: float
+        y: float
+        name: Name | None
+        id: Name | None
+
+    TaskJson = RowJson
+    RobotJson = RowJson
+else:
+    TaskJson = _row_json(
+        "TaskJson",
+        """One task: its place, the latest finish that counts, the work to be done, its name, and its id.
 
     Where the ids are each of 0..N-1 once they number the tasks; otherwise they are names of those that have no name.
-    """
-
-    x: float
-    y: float
-    deadline: Positive
-    workload: NonNegative
-    name: Name | None = None
-    id: Name | None = None
-
-
-class RobotJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One robot: its start, its work and its way per time unit, its name, and its id, as those of tasks."""
-
-    x: float
-    y: float
-    capacity: Positive
-    speed: Positive = 1.0
-    name: Name | None = None
-    id: Name | None = None
-
-
-RowJson = TypeVar("RowJson", TaskJson, RobotJson)
+    """,
+        "task",
+    )
+    RobotJson = _row_json(
+        "RobotJson",
+        "One robot: its start, its work and its way per time unit, its name, and its id, as those of tasks.",
+        "robot",
+    )
 
 
 class ScenarioJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -155,25 +170,13 @@ def read_json_part(path: StrPath) -> Part:
 
 
 def json_part(
-    path: StrPath, size: MapJson | None, tasks: Sequence[TaskJson], robots: Sequence[RobotJson], name: str
+    path: StrPath, size: MapJson | None, tasks: Sequence[RowJson], robots: Sequence[RowJson], name: str
 ) -> Part:
     """What any JSON file that holds a scenario says of it."""
     return Part(
         path=str(path),
-        tasks=in_id_order(
-            [
-                (_text(task.id), TaskRow(where, task.x, task.y, task.deadline, task.workload, _text(task.name)))
-                for where, task in _placed(path, "tasks", tasks)
-            ],
-            "task",
-        ),
-        robots=in_id_order(
-            [
-                (_text(robot.id), RobotRow(where, robot.x, robot.y, robot.capacity, robot.speed, _text(robot.name)))
-                for where, robot in _placed(path, "robots", robots)
-            ],
-            "robot",
-        ),
+        tasks=in_id_order(_rows(f"{path}: tasks", tasks, "task"), "task"),
+        robots=in_id_order(_rows(f"{path}: robots", robots, "robot"), "robot"),
         map=None if size is None else _map(path, size),
         name=name,
     )
@@ -186,9 +189,16 @@ def _map(path: StrPath, size: MapJson) -> MapRow:
     return MapRow(f"{path}: map", size.width, size.height, x, y)
 
 
-def _placed(path: StrPath, field: str, rows: Sequence[RowJson]) -> Iterator[tuple[str, RowJson]]:
-    """Rows with where they stand."""
-    return ((f"{path}: {field}[{index}]", row) for index, row in enumerate(rows))
+def _rows(where: str, rows: Sequence[RowJson], who: Who) -> list[tuple[str, Row]]:
+    """Rows with their ids."""
+    names = [each.name for each in quantities_of(who)]
+    return [
+        (
+            _text(row.id),
+            Row(f"{where}[{index}]", row.x, row.y, {name: getattr(row, name) for name in names}, _text(row.name)),
+        )
+        for index, row in enumerate(rows)
+    ]
 
 
 def _text(name: Name | None) -> str:
@@ -227,25 +237,13 @@ def write_json(scenario: Scenario, path: StrPath) -> None:
 
 def scenario_fields(scenario: Scenario) -> dict[str, Any]:
     """The fields that hold a scenario in any JSON file."""
-    tasks = zip(scenario.task_xy.tolist(), scenario.deadline.tolist(), scenario.workload.tolist(), strict=True)
-    robots = zip(scenario.robot_xy.tolist(), scenario.capacity.tolist(), scenario.speed.tolist(), strict=True)
     corner = {} if scenario.map_origin == (0.0, 0.0) else dict(zip("xy", scenario.map_origin, strict=True))
     return {
         "name": scenario.name,
         "map": {"width": scenario.map_size[0], "height": scenario.map_size[1], **corner},
-        "tasks": [
-            {**_named(scenario.task_names, index), "x": x, "y": y, "deadline": due, "workload": work}
-            for index, ((x, y), due, work) in enumerate(tasks)
-        ],
-        "robots": [
-            {**_named(scenario.robot_names, index), "x": x, "y": y, "capacity": rate, "speed": speed}
-            for index, ((x, y), rate, speed) in enumerate(robots)
-        ],
+        "tasks": task_rows(scenario),
+        "robots": robot_rows(scenario),
     }
-
-
-def _named(names: tuple[str, ...], index: int) -> dict[str, str]:
-    return {"name": names[index]} if names else {}
 
 
 def read_plan(path: StrPath) -> Plan:

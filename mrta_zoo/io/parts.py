@@ -4,51 +4,43 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import NamedTuple, TypeVar
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from mrta_zoo.digits import full
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.source import check_name, shown
-from mrta_zoo.scenario import (
-    BOUNDS,
-    LARGEST,
-    SMALLEST,
-    Scenario,
-    map_origin_for,
-    square_around,
-    usable_name,
-)
+from mrta_zoo.map import map_origin_for, square_around
+from mrta_zoo.names import usable_name
+from mrta_zoo.quantities import BOUNDS, LARGEST, SMALLEST, FloatArray, Who
+from mrta_zoo.scenario import QUANTITIES, Scenario, quantities_of
 from mrta_zoo.wording import composed, counted
 
 
-class TaskRow(NamedTuple):
-    """One task as read: where it stands ("file, line 3"), its place, deadline > 0, workload >= 0, and maybe a name."""
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One task or robot as read.
+
+    Attributes:
+        where: it stands: "file, line 3".
+        x: its place, or where it starts.
+        y: likewise.
+        values: its quantities, see `mrta_zoo.scenario.QUANTITIES`; those with a default may be missing.
+        name: what people call it, maybe nothing.
+    """
 
     where: str
     x: float
     y: float
-    deadline: float
-    workload: float
-    name: str = ""
-
-
-class RobotRow(NamedTuple):
-    """One robot as read: where it stands ("file, line 3"), its start, capacity > 0, speed > 0, and maybe a name."""
-
-    where: str
-    x: float
-    y: float
-    capacity: float
-    speed: float
+    values: Mapping[str, float]
     name: str = ""
 
 
 class MapRow(NamedTuple):
-    """The map as read: where it stands, its width > 0 and height > 0, and its lowest x and y, NaN if not said."""
+    """The map as read: where it stands, its size, and its lowest x and y, NaN if not said."""
 
     where: str
     width: float
@@ -57,7 +49,7 @@ class MapRow(NamedTuple):
     y: float = math.nan
 
 
-Row = TypeVar("Row", TaskRow, RobotRow)
+_COORDINATE = f"a number from {-LARGEST:g} to {LARGEST:g}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +66,8 @@ class Part:
     """
 
     path: str
-    tasks: tuple[TaskRow, ...] = ()
-    robots: tuple[RobotRow, ...] = ()
+    tasks: tuple[Row, ...] = ()
+    robots: tuple[Row, ...] = ()
     map: MapRow | None = None
     name: str = ""
     num_robots: int | None = None
@@ -111,28 +103,29 @@ def assemble(main: Part, agents: Part | None) -> Scenario:
             f"{agents.path} has {counted(len(agents.robots), 'robot')}; expected {main.num_robots}, "
             f"the number in line 1 of {main.path}"
         )
-    for each in (main.map, *main.tasks, agents.map, *agents.robots):
-        if each is not None:
-            check_magnitudes(each)
-    rows: tuple[TaskRow | RobotRow, ...] = (*main.tasks, *agents.robots)
+    for said in (main.map, agents.map):
+        if said is not None:
+            _check_map(said)
+    rows_of: dict[Who, tuple[Row, ...]] = {"task": main.tasks, "robot": agents.robots}
+    _check_rows(main.tasks, "task")
+    _check_rows(agents.robots, "robot")
+    rows = (*main.tasks, *agents.robots)
     places = np.array([(row.x, row.y) for row in rows])
-    said = _map_of(main, agents)
-    size, origin = (said[1:3], said[3:]) if said else square_around(places)
+    row = _map_of(main, agents)
+    size, origin = (row[1:3], row[3:]) if row else square_around(places)
     if any(map(math.isnan, origin)):
         origin = map_origin_for(places, size)
-    check_inside(rows, size, origin)
+    _check_inside(rows, size, origin)
+    columns = {each.name: [row.values.get(each.name, each.default) for row in rows_of[each.who]] for each in QUANTITIES}
     return Scenario(
-        task_xy=[(row.x, row.y) for row in main.tasks],  # type: ignore[arg-type]
-        deadline=[row.deadline for row in main.tasks],  # type: ignore[arg-type]
-        workload=[row.workload for row in main.tasks],  # type: ignore[arg-type]
-        robot_xy=[(row.x, row.y) for row in agents.robots],  # type: ignore[arg-type]
-        capacity=[row.capacity for row in agents.robots],  # type: ignore[arg-type]
-        speed=[row.speed for row in agents.robots],  # type: ignore[arg-type]
+        task_xy=places[: len(main.tasks)],
+        robot_xy=places[len(main.tasks) :],
         map_size=size,
         name=composed(main.name),
         map_origin=origin,
         task_names=_names(main.tasks, "task"),
         robot_names=_names(agents.robots, "robot"),
+        **columns,  # type: ignore[arg-type]
     )
 
 
@@ -151,11 +144,11 @@ def _map_text(row: MapRow) -> str:
     )
 
 
-def _names(rows: Sequence[TaskRow | RobotRow], who: str) -> tuple[str, ...]:
+def _names(rows: Sequence[Row], who: Who) -> tuple[str, ...]:
     """The names of rows, of which all have one or none has."""
     if not any(row.name for row in rows):
         return ()
-    first: dict[str, TaskRow | RobotRow] = {}
+    first: dict[str, Row] = {}
     for row in rows:
         if not row.name:
             raise ScenarioError(f"{row.where}: this {who} has no name; expected one for each {who}, as others have one")
@@ -174,28 +167,34 @@ def _names(rows: Sequence[TaskRow | RobotRow], who: str) -> tuple[str, ...]:
     return tuple(first)
 
 
-def check_magnitudes(row: TaskRow | RobotRow | MapRow) -> None:
-    """Raises ScenarioError for a number of a row that `Scenario` would refuse without saying where it stands."""
-    for what, value in row._asdict().items():
-        if isinstance(value, str) or math.isnan(value):
-            continue
-        low = {"x": -LARGEST, "y": -LARGEST, "workload": 0.0}.get(what, SMALLEST)
-        if not low <= value <= LARGEST:
-            expected = f"a number > 0{BOUNDS}" if low == SMALLEST else f"a number from {low:g} to {LARGEST:g}"
-            raise ScenarioError(f"{row.where}: {what} is {value!r}; expected {expected}")
+def _check_rows(rows: Sequence[Row], who: Who) -> None:
+    """What `Scenario` would refuse without saying where it stands."""
+    for row in rows:
+        for letter, value in (("x", row.x), ("y", row.y)):
+            _check_number(row.where, letter, value, -LARGEST <= value <= LARGEST, _COORDINATE)
+        for each in quantities_of(who):
+            if each.name in row.values:
+                value = row.values[each.name]
+                _check_number(row.where, each.name, value, bool(each.allows(value)), each.expected)
 
 
-def check_inside(
-    rows: Sequence[TaskRow | RobotRow], map_size: tuple[float, float], origin: tuple[float, float]
-) -> None:
-    """Raises ScenarioError for the first row whose place is outside the map."""
+def _check_map(row: MapRow) -> None:
+    for what, value in (("width", row.width), ("height", row.height)):
+        _check_number(row.where, what, value, SMALLEST <= value <= LARGEST, f"a number > 0{BOUNDS}")
+    for what, value in (("x", row.x), ("y", row.y)):
+        _check_number(row.where, what, value, math.isnan(value) or -LARGEST <= value <= LARGEST, _COORDINATE)
+
+
+def _check_number(where: str, what: str, value: float, ok: bool, expected: str) -> None:
+    if not ok:
+        raise ScenarioError(f"{where}: {what} is {value!r}; expected {expected}")
+
+
+def _check_inside(rows: Sequence[Row], map_size: tuple[float, float], origin: tuple[float, float]) -> None:
     for row in rows:
         for letter, value, low, side in zip("xy", (row.x, row.y), origin, map_size, strict=True):
-            if not low <= value <= low + side:
-                raise ScenarioError(
-                    f"{row.where}: {letter} is {value!r}; expected a number from {low:g} to {low + side!r}, "
-                    "inside the map"
-                )
+            expected = f"a number from {low:g} to {low + side!r}, inside the map"
+            _check_number(row.where, letter, value, low <= value <= low + side, expected)
 
 
 def place_in_file(where: str) -> str:
@@ -227,4 +226,20 @@ def in_id_order(rows: Sequence[tuple[str, Row]], what: str) -> tuple[Row, ...]:
     numbers = [str(index) for index in range(len(rows))]
     if first.keys() == set(numbers):
         return tuple(first[number] for number in numbers)
-    return tuple(row if row.name else row._replace(name=given) for given, row in rows)
+    return tuple(row if row.name else replace(row, name=given) for given, row in rows)
+
+
+def task_rows(scenario: Scenario) -> list[dict[str, Any]]:
+    """The tasks of a scenario as files hold them: name, if they have names, x, y and the quantities that are said."""
+    return _rows(scenario.task_names, scenario.task_xy, scenario.said("task"))
+
+
+def robot_rows(scenario: Scenario) -> list[dict[str, Any]]:
+    """The robots likewise."""
+    return _rows(scenario.robot_names, scenario.robot_xy, scenario.said("robot"))
+
+
+def _rows(names: Sequence[str], places: FloatArray, quantities: Mapping[str, FloatArray]) -> list[dict[str, Any]]:
+    columns = {**({"name": names} if names else {}), "x": places[:, 0].tolist(), "y": places[:, 1].tolist()}
+    columns |= {name: values.tolist() for name, values in quantities.items()}
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
