@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -16,10 +17,11 @@ from mrta_zoo.io.parts import MapRow, Part, Row, in_id_order, robot_rows, task_r
 from mrta_zoo.io.paths import suffix_of
 from mrta_zoo.io.source import StrPath, read_text
 from mrta_zoo.io.strict_json import read_document, write_document
-from mrta_zoo.left_out import Reason
+from mrta_zoo.left_out import LeftOut, Reason
 from mrta_zoo.plan import Plan
 from mrta_zoo.quantities import Who
 from mrta_zoo.scenario import Scenario, quantities_of
+from mrta_zoo.verify import Score
 from mrta_zoo.wording import composed
 
 Positive = Annotated[float, Meta(gt=0)]
@@ -95,7 +97,7 @@ class ScenarioJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     map: MapJson | None = None
 
 
-class ScheduledTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
+class VisitJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One stop of a robot: when it arrives, when it finishes, and whether that met the deadline.
 
     The names of the task and the robot are there if they have one.
@@ -110,7 +112,7 @@ class ScheduledTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omi
     robot_name: str | None = None
 
 
-class LeftOutTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
+class LeftOutJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A task that nobody takes, its name if it has one, and why.
 
     It is out of reach if no robot could finish it by its deadline, even if it went straight there at the start.
@@ -121,7 +123,7 @@ class LeftOutTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_
     name: str | None = None
 
 
-class PlanScore(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+class ScoreJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """What the plan achieves: completed of all tasks, their share, cost (Eq. 1), distance and makespan."""
 
     completed: Index
@@ -143,20 +145,10 @@ class PlanJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     routes: tuple[tuple[Index, ...], ...]
     scenario: str = ""
     method: str = ""
-    schedule: tuple[tuple[ScheduledTask, ...], ...] | None = None
-    score: PlanScore | None = None
-    left_out: tuple[LeftOutTask, ...] | None = None
+    schedule: tuple[tuple[VisitJson, ...], ...] | None = None
+    score: ScoreJson | None = None
+    left_out: tuple[LeftOutJson, ...] | None = None
     bound: Index | None = None  # completed tasks
-
-
-_PARTS: dict[str, type[msgspec.Struct]] = {
-    "map": MapJson,
-    "tasks": TaskJson,
-    "robots": RobotJson,
-    "schedule": ScheduledTask,
-    "score": PlanScore,
-    "left_out": LeftOutTask,
-}
 
 
 def read_json_part(path: StrPath) -> Part:
@@ -165,7 +157,7 @@ def read_json_part(path: StrPath) -> Part:
     Raises:
         ScenarioError: if it is missing or malformed.
     """
-    data = read_document(path, ScenarioJson, _PARTS, ScenarioError)
+    data = read_document(path, ScenarioJson, ScenarioError)
     return json_part(path, data.map, data.tasks, data.robots, data.name or Path(path).stem)
 
 
@@ -252,19 +244,20 @@ def read_plan(path: StrPath) -> Plan:
     Raises:
         PlanError: if the file is missing or malformed.
     """
-    data = read_document(path, PlanJson, _PARTS, PlanError)
+    data = read_document(path, PlanJson, PlanError)
     return Plan(routes=data.routes, scenario=composed(data.scenario), method=data.method, bound=data.bound)
 
 
 def write_plan(
-    plan: Plan,
-    path: StrPath,
-    *,
-    schedule: Sequence[Sequence[ScheduledTask]] | None = None,
-    score: PlanScore | None = None,
-    left_out: Sequence[LeftOutTask] | None = None,
+    plan: Plan, path: StrPath, score: Score | None = None, left_out: Sequence[LeftOut] | None = None
 ) -> None:
-    """Write a plan, one route a line, and for people the schedule (a sequence for each robot), score and the rest.
+    """Write a plan, one route a line, and for people its score with the schedule, and what it leaves out.
+
+    Args:
+        plan: the plan.
+        path: the file.
+        score: of the plan.
+        left_out: by the plan; names of tasks are taken from the score.
 
     Raises:
         PlanError: if the file cannot be written.
@@ -278,13 +271,24 @@ def write_plan(
     }
     if plan.bound is not None:
         document["bound"] = plan.bound
+    tasks, robots = (score.task_names, score.robot_names) if score is not None else ((), ())
     if score is not None:
-        document["score"] = msgspec.to_builtins(score)
+        document["score"] = {field: getattr(score, field) for field in ScoreJson.__struct_fields__}
     if left_out is not None:
-        document["left_out"] = msgspec.to_builtins(left_out)
-    if schedule is not None:
-        document["schedule"] = [[msgspec.to_builtins(stop) for stop in stops] for stops in schedule]
+        document["left_out"] = [{**asdict(each), **_named("name", tasks, each.task)} for each in left_out]
+    if score is not None:
+        document["schedule"] = [
+            [
+                {**asdict(visit), **_named("name", tasks, visit.task), **_named("robot_name", robots, robot)}
+                for visit in visits
+            ]
+            for robot, visits in enumerate(score.schedule)
+        ]
     write_document(document, path, PlanError)
+
+
+def _named(field: str, names: Sequence[str], index: int) -> dict[str, str]:
+    return {field: names[index]} if names else {}
 
 
 def schema_text(document: type[msgspec.Struct]) -> str:
