@@ -16,6 +16,7 @@ Who = Literal["task", "robot"]
 SMALLEST, LARGEST = 1e-12, 1e12
 """What a positive number may be: times and distances made of such numbers neither overflow nor vanish."""
 BOUNDS = f", from {SMALLEST:g} to {LARGEST:g}"
+COORDINATE = f"a number from {-LARGEST:g} to {LARGEST:g}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +63,7 @@ class Quantity:
         """Make sure that all values are in range.
 
         Raises:
-            ScenarioError: for the first that is not.
+            RowError: for the first that is not.
         """
         sign = values > 0 if self.positive else values >= 0
         check_values(values, self.who, self.name, sign, f"a finite number {'>' if self.positive else '>='} 0")
@@ -70,8 +71,34 @@ class Quantity:
 
 
 def check_values(values: FloatArray, who: Who, what: str, ok: npt.NDArray[np.bool_], expected: str) -> None:
-    """Raises ScenarioError for the first value that is not finite or not ok."""
+    """Make sure that all values are finite and ok.
+
+    Raises:
+        RowError: for the first that is not.
+    """
     bad = ~(ok & np.isfinite(values))
     if bad.any():
         index = int(bad.argmax())
-        raise ScenarioError(f"{who} {index} has {what} {values[index]:g}; expected {expected}")
+        raise RowError.of(who, index, what, float(values[index]), expected)
+
+
+class RowError(ScenarioError):
+    """A number of one task or robot is out of range.
+
+    Attributes:
+        who: whose number it is.
+        index: which of them.
+        complaint: what is wrong, for those who say for themselves where: "deadline is 0.0; expected a number > 0".
+    """
+
+    who: Who
+    index: int
+    complaint: str
+
+    @classmethod
+    def of(cls, who: Who, index: int, what: str, value: float, expected: str) -> RowError:
+        """The error about a value."""
+        error = cls(f"{who} {index} has {what} {value:g}; expected {expected}")
+        error.who, error.index = who, index
+        error.complaint = f"{what} is {value!r}; expected {expected}"
+        return error

@@ -104,7 +104,7 @@ class Scenario:
         for who, xy in places:
             for letter, values, low, high in zip("xy", xy.T, self.map_origin, self.map_end, strict=True):
                 inside = (values >= low) & (values <= high)
-                check_values(values, who, letter, inside, f"a number from {low:g} to {high:g}, inside the map")
+                check_values(values, who, letter, inside, f"a number from {low:g} to {high:.12g}, inside the map")
 
     @property
     def num_tasks(self) -> int:

@@ -13,10 +13,10 @@ import numpy as np
 from mrta_zoo.digits import full
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.source import check_name, shown
-from mrta_zoo.map import map_origin_for, square_around
+from mrta_zoo.map import square_around
 from mrta_zoo.names import usable_name
-from mrta_zoo.quantities import BOUNDS, LARGEST, SMALLEST, FloatArray, Who
-from mrta_zoo.scenario import QUANTITIES, Scenario, quantities_of
+from mrta_zoo.quantities import BOUNDS, COORDINATE, LARGEST, SMALLEST, FloatArray, RowError, Who
+from mrta_zoo.scenario import QUANTITIES, Scenario
 from mrta_zoo.wording import composed, counted
 
 
@@ -49,9 +49,6 @@ class MapRow(NamedTuple):
     y: float = math.nan
 
 
-_COORDINATE = f"a number from {-LARGEST:g} to {LARGEST:g}"
-
-
 @dataclass(frozen=True, slots=True)
 class Part:
     """All that one file says. Rows are in index order; their values are checked, except against the map.
@@ -76,7 +73,7 @@ class Part:
 def assemble(main: Part, agents: Part | None) -> Scenario:
     """The scenario of a file that has all, or of a file with tasks and another with the robots.
 
-    Without a map in either file it is `mrta_zoo.scenario.square_around` all places.
+    Without a map in either file it is `mrta_zoo.map.square_around` all places.
 
     Raises:
         ScenarioError: if something is missing or said twice, a number is too small or large, or a place is outside
@@ -103,34 +100,38 @@ def assemble(main: Part, agents: Part | None) -> Scenario:
             f"{agents.path} has {counted(len(agents.robots), 'robot')}; expected {main.num_robots}, "
             f"the number in line 1 of {main.path}"
         )
-    for said in (main.map, agents.map):
-        if said is not None:
-            _check_map(said)
     rows_of: dict[Who, tuple[Row, ...]] = {"task": main.tasks, "robot": agents.robots}
-    _check_rows(main.tasks, "task")
-    _check_rows(agents.robots, "robot")
-    rows = (*main.tasks, *agents.robots)
-    places = np.array([(row.x, row.y) for row in rows])
-    row = _map_of(main, agents)
-    size, origin = (row[1:3], row[3:]) if row else square_around(places)
-    if any(map(math.isnan, origin)):
-        origin = map_origin_for(places, size)
-    _check_inside(rows, size, origin)
-    columns = {each.name: [row.values.get(each.name, each.default) for row in rows_of[each.who]] for each in QUANTITIES}
-    return Scenario(
-        task_xy=places[: len(main.tasks)],
-        robot_xy=places[len(main.tasks) :],
-        map_size=size,
-        name=composed(main.name),
-        map_origin=origin,
-        task_names=_names(main.tasks, "task"),
-        robot_names=_names(agents.robots, "robot"),
-        **columns,  # type: ignore[arg-type]
-    )
+    for row in (*main.tasks, *agents.robots):
+        for letter, value in (("x", row.x), ("y", row.y)):
+            _check_number(row.where, letter, value, -LARGEST, COORDINATE)
+    places = np.array([(row.x, row.y) for row in (*main.tasks, *agents.robots)])
+    said = _map_of(main, agents)
+    size, origin = (said[1:3], said[3:]) if said else square_around(places)
+    try:
+        return Scenario(
+            task_xy=places[: len(main.tasks)],
+            robot_xy=places[len(main.tasks) :],
+            map_size=size,
+            name=composed(main.name),
+            map_origin=origin,
+            task_names=_names(main.tasks, "task"),
+            robot_names=_names(agents.robots, "robot"),
+            **{  # type: ignore[arg-type]
+                each.name: [row.values.get(each.name, each.default) for row in rows_of[each.who]] for each in QUANTITIES
+            },
+        )
+    except RowError as error:
+        raise ScenarioError(f"{rows_of[error.who][error.index].where}: {error.complaint}") from None
 
 
 def _map_of(main: Part, agents: Part) -> MapRow | None:
     """What either file says of the map."""
+    for each in filter(None, (main.map, agents.map)):
+        for what in ("width", "height"):
+            _check_number(each.where, what, getattr(each, what), SMALLEST, f"a number > 0{BOUNDS}")
+        for what in "xy":
+            if not math.isnan(getattr(each, what)):
+                _check_number(each.where, what, getattr(each, what), -LARGEST, COORDINATE)
     if main.map and agents.map and repr(main.map[1:]) != repr(agents.map[1:]):  # as texts, in which NaN equals NaN
         raise ScenarioError(
             f"{agents.map.where}: map is {_map_text(agents.map)}; expected {_map_text(main.map)} as in {main.path}"
@@ -167,34 +168,9 @@ def _names(rows: Sequence[Row], who: Who) -> tuple[str, ...]:
     return tuple(first)
 
 
-def _check_rows(rows: Sequence[Row], who: Who) -> None:
-    """What `Scenario` would refuse without saying where it stands."""
-    for row in rows:
-        for letter, value in (("x", row.x), ("y", row.y)):
-            _check_number(row.where, letter, value, -LARGEST <= value <= LARGEST, _COORDINATE)
-        for each in quantities_of(who):
-            if each.name in row.values:
-                value = row.values[each.name]
-                _check_number(row.where, each.name, value, bool(each.allows(value)), each.expected)
-
-
-def _check_map(row: MapRow) -> None:
-    for what, value in (("width", row.width), ("height", row.height)):
-        _check_number(row.where, what, value, SMALLEST <= value <= LARGEST, f"a number > 0{BOUNDS}")
-    for what, value in (("x", row.x), ("y", row.y)):
-        _check_number(row.where, what, value, math.isnan(value) or -LARGEST <= value <= LARGEST, _COORDINATE)
-
-
-def _check_number(where: str, what: str, value: float, ok: bool, expected: str) -> None:
-    if not ok:
+def _check_number(where: str, what: str, value: float, least: float, expected: str) -> None:
+    if not least <= value <= LARGEST:
         raise ScenarioError(f"{where}: {what} is {value!r}; expected {expected}")
-
-
-def _check_inside(rows: Sequence[Row], map_size: tuple[float, float], origin: tuple[float, float]) -> None:
-    for row in rows:
-        for letter, value, low, side in zip("xy", (row.x, row.y), origin, map_size, strict=True):
-            expected = f"a number from {low:g} to {low + side!r}, inside the map"
-            _check_number(row.where, letter, value, low <= value <= low + side, expected)
 
 
 def place_in_file(where: str) -> str:

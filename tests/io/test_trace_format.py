@@ -74,7 +74,7 @@ BAD_TRACES = [
     (TRACE.replace('"version": 1', '"version": 2'), "version is 2; expected 1"),
     (TRACE.replace('"feasible"', '"any"'), "mask_rule is 'any'; expected one of active, feasible, unvisited"),
     (TRACE.replace('"deadline": 20', '"deadline": 0'), "tasks[0].deadline is 0; expected a number > 0"),
-    (TRACE.replace('"y": 4', '"y": 51'), "tasks[0]: y is 51.0; expected a number from 0 to 50.0"),
+    (TRACE.replace('"y": 4', '"y": 51'), "tasks[0]: y is 51.0; expected a number from 0 to 50, inside"),
     (TRACE.replace('[{"x": 0, "y": 0, "capacity": 2}]', "[]"), "robots is a list of 0; expected a list of length >= 1"),
     (TRACE.replace('"task": null, ', ""), "decisions[1] has no field 'task'; expected task, time, robot"),
     (TRACE.replace('"task": 0', '"task": -1'), "decisions[0].task is -1; expected a whole number >= 0"),
