@@ -1,34 +1,26 @@
-"""Scenarios and plans as JSON, read strictly. The schemas lie beside this module as ``*.schema.json``."""
+"""Scenarios as JSON, read strictly. The schema is ``scenario.schema.json``."""
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
 
-from mrta_zoo.errors import PlanError, ScenarioError
+from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.parts import MapRow, Part, Row, in_id_order, robot_rows, task_rows
 from mrta_zoo.io.paths import suffix_of
 from mrta_zoo.io.source import StrPath, read_text
 from mrta_zoo.io.strict_json import read_document, write_document
-from mrta_zoo.left_out import LeftOut, Reason
-from mrta_zoo.plan import Plan
 from mrta_zoo.quantities import Who
 from mrta_zoo.scenario import Scenario, quantities_of
-from mrta_zoo.verify import Score
-from mrta_zoo.wording import composed
 
 Positive = Annotated[float, Meta(gt=0)]
 NonNegative = Annotated[float, Meta(ge=0)]
 Index = Annotated[int, Meta(ge=0)]
-
-
 Name = Annotated[str, Meta(min_length=1)] | int
 
 
@@ -97,62 +89,8 @@ class ScenarioJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     map: MapJson | None = None
 
 
-class VisitJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One stop of a robot: when it arrives, when it finishes, and whether that met the deadline.
-
-    The names of the task and the robot are there if they have one.
-    """
-
-    task: Index
-    arrival: NonNegative
-    finish: NonNegative
-    deadline: Positive
-    completed: bool
-    name: str | None = None
-    robot_name: str | None = None
-
-
-class LeftOutJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A task that nobody takes, its name if it has one, and why.
-
-    It is out of reach if no robot could finish it by its deadline, even if it went straight there at the start.
-    """
-
-    task: Index
-    reason: Reason
-    name: str | None = None
-
-
-class ScoreJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What the plan achieves: completed of all tasks, their share, cost (Eq. 1), distance and makespan."""
-
-    completed: Index
-    tasks: Index
-    completion: Annotated[float, Meta(ge=0, le=1)]
-    cost: NonNegative
-    distance: NonNegative
-    makespan: NonNegative
-
-
-class PlanJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A plan file: for each robot its tasks in order, for people its schedule and score, and what no plan exceeds.
-
-    What is left out is for people, too, as are names: tasks and robots are known by their numbers, from 0.
-    """
-
-    format: Literal["mrta_zoo.plan"]
-    version: Literal[1]
-    routes: tuple[tuple[Index, ...], ...]
-    scenario: str = ""
-    method: str = ""
-    schedule: tuple[tuple[VisitJson, ...], ...] | None = None
-    score: ScoreJson | None = None
-    left_out: tuple[LeftOutJson, ...] | None = None
-    bound: Index | None = None  # completed tasks
-
-
 def read_json_part(path: StrPath) -> Part:
-    """What a JSON scenario file says; without a name the scenario is called like the file.
+    """What a JSON scenario file says; without a name the scenario is called by the file's.
 
     Raises:
         ScenarioError: if it is missing or malformed.
@@ -164,7 +102,7 @@ def read_json_part(path: StrPath) -> Part:
 def json_part(
     path: StrPath, size: MapJson | None, tasks: Sequence[RowJson], robots: Sequence[RowJson], name: str
 ) -> Part:
-    """What any JSON file that holds a scenario says of it."""
+    """What a JSON file that holds a scenario, alone or with other things, says of it."""
     return Part(
         path=str(path),
         tasks=in_id_order(_rows(f"{path}: tasks", tasks, "task"), "task"),
@@ -183,14 +121,11 @@ def _map(path: StrPath, size: MapJson) -> MapRow:
 
 def _rows(where: str, rows: Sequence[RowJson], who: Who) -> list[tuple[str, Row]]:
     """Rows with their ids."""
-    names = [each.name for each in quantities_of(who)]
-    return [
-        (
-            _text(row.id),
-            Row(f"{where}[{index}]", row.x, row.y, {name: getattr(row, name) for name in names}, _text(row.name)),
-        )
-        for index, row in enumerate(rows)
-    ]
+    found = []
+    for index, row in enumerate(rows):
+        values = {each.name: getattr(row, each.name) for each in quantities_of(who)}
+        found.append((_text(row.id), Row(f"{where}[{index}]", row.x, row.y, values, _text(row.name))))
+    return found
 
 
 def _text(name: Name | None) -> str:
@@ -236,62 +171,3 @@ def scenario_fields(scenario: Scenario) -> dict[str, Any]:
         "tasks": task_rows(scenario),
         "robots": robot_rows(scenario),
     }
-
-
-def read_plan(path: StrPath) -> Plan:
-    """The plan of a JSON plan file. What is there for people is checked for form only, and dropped.
-
-    Raises:
-        PlanError: if the file is missing or malformed.
-    """
-    data = read_document(path, PlanJson, PlanError)
-    return Plan(routes=data.routes, scenario=composed(data.scenario), method=data.method, bound=data.bound)
-
-
-def write_plan(
-    plan: Plan, path: StrPath, score: Score | None = None, left_out: Sequence[LeftOut] | None = None
-) -> None:
-    """Write a plan, one route a line, and for people its score with the schedule, and what it leaves out.
-
-    Args:
-        plan: the plan.
-        path: the file.
-        score: of the plan.
-        left_out: by the plan; names of tasks are taken from the score.
-
-    Raises:
-        PlanError: if the file cannot be written.
-    """
-    document: dict[str, Any] = {
-        "format": "mrta_zoo.plan",
-        "version": 1,
-        "scenario": plan.scenario,
-        "method": plan.method,
-        "routes": [list(route) for route in plan.routes],
-    }
-    if plan.bound is not None:
-        document["bound"] = plan.bound
-    tasks, robots = (score.task_names, score.robot_names) if score is not None else ((), ())
-    if score is not None:
-        document["score"] = {field: getattr(score, field) for field in ScoreJson.__struct_fields__}
-    if left_out is not None:
-        document["left_out"] = [{**asdict(each), **_named("name", tasks, each.task)} for each in left_out]
-    if score is not None:
-        document["schedule"] = [
-            [
-                {**asdict(visit), **_named("name", tasks, visit.task), **_named("robot_name", robots, robot)}
-                for visit in visits
-            ]
-            for robot, visits in enumerate(score.schedule)
-        ]
-    write_document(document, path, PlanError)
-
-
-def _named(field: str, names: Sequence[str], index: int) -> dict[str, str]:
-    return {field: names[index]} if names else {}
-
-
-def schema_text(document: type[msgspec.Struct]) -> str:
-    """The JSON Schema of a kind of file, as it lies beside this module."""
-    schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(document)}
-    return json.dumps(schema, indent=2) + "\n"

@@ -112,6 +112,8 @@ def _sentence(path: StrPath, problem: str, document: Any, kind: type[msgspec.Str
         return f"{where} has {number} field {shown(field)}; expected {only}{fields}"
     if complaint.startswith("Invalid enum value"):
         return f"{where} is {shown(value)}; expected one of {', '.join(_schema_at(kind, steps)['enum'])}"
+    if not complaint.startswith("Expected"):
+        return f"{where} is {shown(value)}; {complaint}"
     expected = complaint.removeprefix("Expected ").partition(", got")[0]
     for word, plain in _PLAIN.items():
         expected = expected.replace(word, plain)
@@ -136,6 +138,12 @@ def _format_of(kind: type[msgspec.Struct]) -> str:
     """The value that `format` must have."""
     name: str = get_args(get_type_hints(kind)["format"])[0]
     return name
+
+
+def schema_text(document: type[msgspec.Struct]) -> str:
+    """The JSON Schema of a kind of file, as it lies beside this module."""
+    schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(document)}
+    return json.dumps(schema, indent=2) + "\n"
 
 
 def write_document(document: dict[str, Any], path: StrPath, error: type[MrtaError]) -> None:

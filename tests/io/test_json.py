@@ -14,7 +14,9 @@ from mrta_zoo import Plan, Scenario
 from mrta_zoo.errors import PlanError, ScenarioError
 from mrta_zoo.generators import TaptcGenerator, UniformGenerator
 from mrta_zoo.io import read_plan, read_scenario, write_plan, write_scenario
-from mrta_zoo.io.json_format import PlanJson, ScenarioJson, schema_text
+from mrta_zoo.io.json_format import ScenarioJson
+from mrta_zoo.io.plan_format import PlanJson
+from mrta_zoo.io.strict_json import schema_text
 from mrta_zoo.verify import Score, Visit
 
 SCHEMAS = Path(mrta_zoo.io.__file__).parent

@@ -16,7 +16,7 @@ import mrta_zoo.io
 from mrta_zoo.bounds import MAX_SEED
 from mrta_zoo.errors import MrtaError
 from mrta_zoo.io import read_cases, read_trace, write_scenario, write_trace
-from mrta_zoo.io.json_format import schema_text
+from mrta_zoo.io.strict_json import schema_text
 from mrta_zoo.io.trace_format import TraceJson
 from mrta_zoo.mission import Mission
 from mrta_zoo.rules import MaskRule
