@@ -1,4 +1,4 @@
-"""Drawn scenarios as a folder of cases."""
+"""Writing scenarios as a folder of cases."""
 
 from __future__ import annotations
 

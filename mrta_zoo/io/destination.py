@@ -1,4 +1,4 @@
-"""Whether a file can be written, asked before the work that it is for."""
+"""Checks, before the work, that its results can be written."""
 
 from __future__ import annotations
 

@@ -153,7 +153,7 @@ class _Head(msgspec.Struct):
 
 
 def write_json(scenario: Scenario, path: StrPath) -> None:
-    """Write a scenario, exactly, one task or robot a line.
+    """Write a scenario, exactly, with one line per task and robot.
 
     Raises:
         ScenarioError: if the file cannot be written.

@@ -74,7 +74,7 @@ class PlanJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def read_plan(path: StrPath) -> Plan:
-    """The plan of a JSON plan file. What is there for people is checked for form only, and dropped.
+    """The plan of a JSON plan file. What is there for people is checked for its form only, and ignored.
 
     Raises:
         PlanError: if the file is missing or malformed.
@@ -86,13 +86,13 @@ def read_plan(path: StrPath) -> Plan:
 def write_plan(
     plan: Plan, path: StrPath, score: Score | None = None, left_out: Sequence[LeftOut] | None = None
 ) -> None:
-    """Write a plan, one route a line, and for people its score with the schedule, and what it leaves out.
+    """Write a plan, one line per route, and for people its score, its schedule and what it leaves out.
 
     Args:
         plan: the plan.
         path: the file.
-        score: of the plan.
-        left_out: by the plan; names of tasks are taken from the score.
+        score: the plan's score, with its schedule and the names of tasks and robots.
+        left_out: the tasks that the plan leaves out.
 
     Raises:
         PlanError: if the file cannot be written.

@@ -1,4 +1,4 @@
-"""JSON documents as files, read strictly: whatever is wrong with one, a sentence says where and what."""
+"""JSON documents as files, read strictly: one sentence says what is wrong with a file, and where."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def read_document(path: StrPath, kind: type[Document], error: type[MrtaError]) -
 
     Args:
         path: the file.
-        kind: the form of the whole, with fields `format` and `version` of one allowed value each.
+        kind: the form of the document, with fields `format` and `version` of one allowed value each.
         error: what to raise.
 
     Raises:
@@ -45,7 +45,7 @@ def read_document(path: StrPath, kind: type[Document], error: type[MrtaError]) -
         raise error(f"{path} is nested too deeply; expected a {name} file") from None
     if not isinstance(document, dict):
         raise error(f"{path} holds {shown(document)}; expected an object with {', '.join(kind.__struct_fields__)}")
-    # Before all else, so that the wrong kind of file is called that.
+    # Before all else, so that a file of another kind is recognised as such.
     for field, expected in (("format", name), ("version", 1)):
         if field not in document:
             raise error(f"{path} has no field {field!r}; expected {field} {shown(expected)}")
@@ -56,12 +56,12 @@ def read_document(path: StrPath, kind: type[Document], error: type[MrtaError]) -
         return msgspec.convert(document, type=kind)
     except msgspec.ValidationError as problem:
         raise error(_sentence(path, str(problem), document, kind)) from None
-    except UnicodeEncodeError as problem:  # of text where a number or another key should be
+    except UnicodeEncodeError as problem:  # text where a number or another key should be
         raise error(f"{path} holds the text {shown(problem.object)}; expected text without lone surrogates") from None
 
 
 def _check_names(document: dict[str, Any], path: StrPath, error: type[MrtaError]) -> None:
-    """Names are printed and written again, which some characters would upset."""
+    """Names are printed and written again, so some characters cannot be allowed."""
     for field in ("name", "scenario", "method", "decode"):
         value = document.get(field)
         if isinstance(value, str):
@@ -126,7 +126,8 @@ def _schema_at(kind: type[msgspec.Struct], steps: Sequence[str]) -> dict[str, An
 
     def resolved(schema: dict[str, Any]) -> dict[str, Any]:
         first = schema.get("anyOf", [schema])[0]  # the other one is null
-        return parts[first["$ref"].rpartition("/")[2]] if "$ref" in first else first
+        found: dict[str, Any] = parts[first["$ref"].rpartition("/")[2]] if "$ref" in first else first
+        return found
 
     schema = resolved(schema)
     for step in steps:
@@ -147,7 +148,7 @@ def schema_text(document: type[msgspec.Struct]) -> str:
 
 
 def write_document(document: dict[str, Any], path: StrPath, error: type[MrtaError]) -> None:
-    """Write JSON with one element of each top-level list a line, to be read by people too.
+    """Write JSON that people can read, too: each element of a top-level list has a line of its own.
 
     Raises:
         error: if the file cannot be written, or a value cannot be read back.

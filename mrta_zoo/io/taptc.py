@@ -2,7 +2,7 @@
 
 Task file: ``m dx dy`` or ``n m dx dy`` (m tasks, n agents, map dx x dy), then m lines
 ``id x y workload deadline``. Agent file: ``n dx dy``, then n lines ``id x y capacity``. Where the ids are each of
-0..N-1 once, in any order, they are the numbers of the tasks or robots; otherwise lines count in order and the ids are
+0..N-1 once, in any order, they number the tasks or robots; otherwise these are numbered by their lines, and the ids are
 names. Where the map lies, if not at 0 and 0, `mrta_zoo.map.map_origin_for` says. Every robot has speed 1.
 """
 

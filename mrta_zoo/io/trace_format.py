@@ -22,8 +22,8 @@ Probability = Annotated[float, Meta(ge=0, le=1)]
 class DecisionJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One decision: the task taken, null if the robot stays for good. Time and robot are for people, and checked.
 
-    Probabilities are pairs of a task and its probability; advice is what the policy would have taken, if it was
-    somebody else who decided.
+    Probabilities are pairs of a task and its probability; advice is what the policy would have taken where
+    somebody else decided.
     """
 
     task: Index | None
@@ -87,7 +87,7 @@ def read_trace(path: StrPath) -> Trace:
 
 
 def write_trace(trace: Trace, path: StrPath) -> None:
-    """Write a trace, exactly, one decision a line.
+    """Write a trace, exactly, one line per decision.
 
     Raises:
         PlanError: if the file cannot be written.
