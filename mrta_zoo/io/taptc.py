@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.io.parts import MapRow, Part, Row, assemble, in_id_order
+from mrta_zoo.io.parts import MapRow, Part, Row, in_id_order
 from mrta_zoo.io.paths import as_spelt
 from mrta_zoo.io.source import StrPath, count, number, read_text, shown, write_text
 from mrta_zoo.map import map_origin_for
@@ -26,16 +26,6 @@ from mrta_zoo.wording import counted
 _CASE_NAME = re.compile(r"r[0-9]+(a[0-9]+i[0-9]+)", re.IGNORECASE)
 _TASK_LINE = "id x y workload deadline"
 _AGENT_LINE = "id x y capacity"
-
-
-def read_taptc(task_path: StrPath, agent_path: StrPath | None = None) -> Scenario:
-    """The scenario of a task file and its agent file, which `find_agent_file` finds if it is not given.
-
-    Raises:
-        ScenarioError: if a file is missing or malformed, or the two do not fit.
-    """
-    tasks = read_task_part(task_path)
-    return assemble(tasks, read_agent_part(agent_path if agent_path is not None else find_agent_file(task_path)))
 
 
 def find_agent_file(task_path: StrPath) -> Path:
