@@ -28,6 +28,7 @@ from mrta_zoo.policies.neural.policy_files import info_file, weights_file
 from mrta_zoo.policies.pretrained import pretrained_names, pretrained_path
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import METHODS, POLISH
+from mrta_zoo.scenario import QUANTITIES
 from mrta_zoo.show.terminal.console import progress_bar
 from mrta_zoo.wording import composed
 
@@ -196,13 +197,12 @@ def digest_of_cases(cases: Iterable[Case]) -> str:
     digest = hashlib.sha256()
     for case in cases:
         scenario = case.scenario
-        digest.update(
-            json.dumps([composed(case.name), scenario.num_tasks, scenario.num_robots, case.best_known]).encode()
-        )
-        for array in (
-            scenario.task_xy, scenario.deadline, scenario.workload,
-            scenario.robot_xy, scenario.capacity, scenario.speed, np.array(scenario.map_size),
-        ):  # fmt: skip
+        tasks, robots = scenario.said("task"), scenario.said("robot")
+        optional = [each.name for each in QUANTITIES if each.default == 0 and each.name in {**tasks, **robots}]
+        head = [composed(case.name), scenario.num_tasks, scenario.num_robots, case.best_known, *optional]
+        digest.update(json.dumps(head).encode())
+        size = np.array(scenario.map_size)
+        for array in (scenario.task_xy, *tasks.values(), scenario.robot_xy, *robots.values(), size):
             digest.update(array.astype("<f8").tobytes())
         if any(scenario.map_origin):  # as digests of before, which know of none
             digest.update(np.array(scenario.map_origin).astype("<f8").tobytes())

@@ -15,7 +15,7 @@ import tyro
 
 from mrta_zoo.cli.flags import run
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.io.destination import check_destination, check_distinct
+from mrta_zoo.io.destination import check_outputs
 from mrta_zoo.io.paths import as_spelt
 from mrta_zoo.io.source import check_name, read_text
 from mrta_zoo.show.axes import plain
@@ -104,9 +104,8 @@ def main(
     """
     if not runs:
         raise ConfigError("no run is given; expected folders of runs, or copies of their history.csv")
-    check_destination(out)
+    check_outputs({"--out": out}, {f"the run {run}": run for run in runs})
     check_format(out)
-    check_distinct({"--out": out}, {f"the run {run}": run for run in runs})
     save_picture(draw_history([read_history(run) for run in runs], by), out, dpi=130)
 
 

@@ -17,7 +17,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.rules import MaskRule, check_mask_rule, finish_time, may_choose, task_cost, travel_time
 from mrta_zoo.scales import Scales
-from mrta_zoo.scenario import Scenario
+from mrta_zoo.scenario import ARRAYS, QUANTITIES, Scenario
 from mrta_zoo.wording import counted
 
 
@@ -81,9 +81,9 @@ class ScenarioBatch:
             )
         n, m = room_n, room_m
 
-        def stack(attribute: str, size: int, fill: float) -> Tensor:
+        def stack(attribute: str, fill: float = 0.0) -> Tensor:
             first: np.ndarray = getattr(scenarios[0], attribute)
-            out = np.full((len(scenarios), size, *first.shape[1:]), fill)
+            out = np.full((len(scenarios), n if ARRAYS[attribute] == "task" else m, *first.shape[1:]), fill)
             for row, scenario in zip(out, scenarios, strict=True):
                 values = getattr(scenario, attribute)
                 row[: len(values)] = values
@@ -93,14 +93,11 @@ class ScenarioBatch:
             return (torch.arange(size) < torch.tensor(counts)[:, None]).to(device)
 
         return cls(
-            task_xy=stack("task_xy", n, 0.0),
-            deadline=stack("deadline", n, 1.0),
-            workload=stack("workload", n, 0.0),
+            task_xy=stack("task_xy"),
             task_exists=exists([s.num_tasks for s in scenarios], n),
-            robot_xy=stack("robot_xy", m, 0.0),
-            capacity=stack("capacity", m, 1.0),
-            speed=stack("speed", m, 1.0),
+            robot_xy=stack("robot_xy"),
             robot_exists=exists([s.num_robots for s in scenarios], m),
+            **{quantity.name: stack(quantity.name, quantity.padding) for quantity in QUANTITIES},
             scales=_stacked_scales(scenarios, mask_rule, device),
         )
 

@@ -20,7 +20,7 @@ from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.runner import evaluate, solve_and_score
 from mrta_zoo.eval.table import summary_tables
 from mrta_zoo.io import Case, read_cases, read_scenario
-from mrta_zoo.io.destination import check_destination, check_distinct
+from mrta_zoo.io.destination import check_outputs
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.paths import suffix_of
 from mrta_zoo.io.records import records_text, write_records
@@ -138,19 +138,15 @@ def solve_command(argv: Sequence[str]) -> None:
         MrtaError: if an option cannot be used, or a file cannot be read or written.
     """
     command = parse(Solve, argv, "solve")
-    for output in (command.out, command.schedule):
-        if output:
-            check_destination(output)
+    destinations = {"--out": command.out, "--schedule": command.schedule, "--plot": command.plot}
+    read = {"the task file": command.taskfile, "the agent file": agent_file(command.taskfile, command.agents)}
+    method = chosen_method(command.planning) if command.method is None else command.method
+    check_outputs(destinations, {**read, **policy_files(method)})
     if command.plot:
         from mrta_zoo.show.figure import check_format
         from mrta_zoo.show.plan.picture import save_plan_picture
 
-        check_destination(command.plot)
         check_format(command.plot)
-    destinations = {"--out": command.out, "--schedule": command.schedule, "--plot": command.plot}
-    read = {"the task file": command.taskfile, "the agent file": agent_file(command.taskfile, command.agents)}
-    method = chosen_method(command.planning) if command.method is None else command.method
-    check_distinct(destinations, {**read, **policy_files(method)})
     scenario = read_scenario(command.taskfile, command.agents)
     with preparing():
         solver = command.planning.solver(method)
@@ -243,11 +239,10 @@ def eval_command(argv: Sequence[str]) -> None:
     command = parse(Eval, argv, "eval")
     methods = names(command.methods)
     if command.out:
-        check_destination(command.out)
         inputs = {f"{path} of the cases": path for path in _files_of(command.cases)}
         for method in methods:
             inputs |= policy_files(method)
-        check_distinct({"--out": command.out}, inputs)
+        check_outputs({"--out": command.out}, inputs)
     with preparing():
         solvers = {method: command.planning.solver(method) for method in methods}
     command.planning.warn_unused(methods)

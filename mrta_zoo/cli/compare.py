@@ -21,7 +21,7 @@ from mrta_zoo.debug.percent import percent
 from mrta_zoo.digits import rounded
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io import read_scenario
-from mrta_zoo.io.destination import check_destination, check_distinct
+from mrta_zoo.io.destination import check_outputs
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.strict_json import write_document
 from mrta_zoo.policies.cpu_threads import cpu_threads
@@ -80,12 +80,11 @@ def compare_command(argv: Sequence[str]) -> None:
     if command.rows < 1:
         raise ConfigError(f"rows is {command.rows}; expected a whole number >= 1")
     if command.out:
-        check_destination(command.out)
         files = {name: Path(name) for name in both if is_episode(name)}
         for name in both:
             files |= policy_files(name)
         read = {"the scenario": command.scenario, "the agent file": agent_file(command.scenario, command.agents)}
-        check_distinct({"--out": command.out}, {**read, **files})
+        check_outputs({"--out": command.out}, {**read, **files})
     scenario = read_scenario(command.scenario, command.agents)
     with (
         preparing(f"plans {command.scenario} by {' and '.join(both)}, and again from where they part"),

@@ -15,7 +15,7 @@ from mrta_zoo.cli.plan_files import PLAN, TRACE, check_name, is_episode, named, 
 from mrta_zoo.debug.recorder import record
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io import read_scenario, read_trace
-from mrta_zoo.io.destination import check_destination, check_distinct
+from mrta_zoo.io.destination import check_outputs
 from mrta_zoo.io.json_format import json_kind
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.policies.cpu_threads import cpu_threads
@@ -69,7 +69,6 @@ def replay_command(argv: Sequence[str]) -> None:
         MrtaError: if an option cannot be used, a file cannot be read or written, or a method fails.
     """
     command = parse(Replay, argv, "replay")
-    check_destination(command.out)
     kind = json_kind(command.source)
     chosen = names(command.policy, "policy") if command.policy is not None else [DEFAULT]
     if command.policy is None and kind in (PLAN, TRACE):
@@ -82,7 +81,7 @@ def replay_command(argv: Sequence[str]) -> None:
         "--scenario": command.scenario,
         "the agent file": agent_file(command.scenario or command.source, command.agents),
     }
-    check_distinct({"--out": command.out}, {**inputs, **files})
+    check_outputs({"--out": command.out}, {**inputs, **files})
     sides = len(chosen) + (kind in (PLAN, TRACE))
     if sides > MOST_SIDES:
         raise ConfigError(f"that makes {sides} episodes; expected {MOST_SIDES} at most, side by side")

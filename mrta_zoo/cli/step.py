@@ -25,7 +25,7 @@ from mrta_zoo.debug.terminal import interact, run_script
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.io import read_scenario, read_trace
-from mrta_zoo.io.destination import check_destination, check_distinct
+from mrta_zoo.io.destination import check_outputs
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.source import decode, read_text
 from mrta_zoo.policies.cpu_threads import cpu_threads
@@ -85,9 +85,7 @@ def step_command(argv: Sequence[str]) -> None:
     if command.scenario is None and command.agents is not None:
         raise ConfigError("--agents is given without a scenario; expected SCENARIO --agents AGENTFILE")
     script = _script(command)
-    if command.session:
-        check_destination(command.session)
-        check_distinct({"--session": command.session}, {"the scenario": command.scenario})
+    check_outputs({"--session": command.session}, {"the scenario": command.scenario})
     with cpu_threads(command.planning.threads), hangups_raised() if command.session else nullcontext():
         session = _begin(command)
         try:

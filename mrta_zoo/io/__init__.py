@@ -2,15 +2,12 @@
 
 from mrta_zoo.io.cases import Case, read_cases
 from mrta_zoo.io.files import read_scenario, write_scenario
-from mrta_zoo.io.json_format import LeftOutTask, PlanScore, ScheduledTask, read_plan, write_plan
+from mrta_zoo.io.plan_format import read_plan, write_plan
 from mrta_zoo.io.taptc import write_taptc
 from mrta_zoo.io.trace_format import read_trace, write_trace
 
 __all__ = [
     "Case",
-    "LeftOutTask",
-    "PlanScore",
-    "ScheduledTask",
     "read_cases",
     "read_plan",
     "read_scenario",

@@ -1,11 +1,12 @@
-"""Drawn scenarios as a folder of cases."""
+"""Writing scenarios as a folder of cases."""
 
 from __future__ import annotations
 
 import os
+import secrets
 import shutil
-import tempfile
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -18,7 +19,7 @@ CaseFormat = Literal["taptc", "json", "csv"]
 
 
 def write_case_folder(scenarios: Iterable[Scenario], folder: Path, file_format: CaseFormat) -> None:
-    """Write scenarios as a folder that `io.read_cases` reads; the whole folder or nothing.
+    """Write scenarios as a folder that `io.read_cases` reads; all of them or none.
 
     TAPTC task files go to ``group1/NAME.txt`` and their agent files to ``agent/NAME.txt``, JSON and CSV files into the
     folder itself.
@@ -42,26 +43,25 @@ def write_case_folder(scenarios: Iterable[Scenario], folder: Path, file_format: 
             raise ConfigError(f"{folder} is a file; expected a new or empty folder")
         final = Path(os.path.realpath(folder))
         new = not final.is_dir()
-        # Inside the folder or, if it is new, beside its place: where renaming cannot leave the file system.
-        workshop = final.parent if new else final
-        workshop.mkdir(parents=True, exist_ok=True)
-        partial = Path(tempfile.mkdtemp(prefix=".unfinished.", dir=workshop))
+        partial = final / f".unfinished.{secrets.token_hex(8)}"
+        partial.mkdir(parents=True)
     except OSError as error:
         raise ConfigError(f"{folder} cannot be made: {(error.strerror or str(error)).lower()}") from None
     try:
-        partial.chmod(0o777 & ~_umask())
         for scenario in scenarios:
             _write_case(scenario, partial, file_format)
-        if new:
-            os.replace(partial, final)
-        else:
-            _move_all(partial, final)
+        for path in sorted(partial.iterdir()):
+            path.replace(final / path.name)
+        new = False
     except ScenarioError as error:  # it names the file where it is now
         raise ScenarioError(str(error).replace(str(partial), str(folder))) from None
     except OSError as error:
         raise ConfigError(f"{folder} cannot be written: {(error.strerror or str(error)).lower()}") from None
     finally:
         shutil.rmtree(partial, ignore_errors=True)
+        if new:
+            with suppress(OSError):
+                final.rmdir()
 
 
 def _write_case(scenario: Scenario, folder: Path, file_format: CaseFormat) -> None:
@@ -72,23 +72,3 @@ def _write_case(scenario: Scenario, folder: Path, file_format: CaseFormat) -> No
         (folder / part).mkdir(exist_ok=True)
     file = f"{scenario.name}.txt"
     write_taptc(scenario, folder / "group1" / file, folder / "agent" / file)
-
-
-def _move_all(source: Path, target: Path) -> None:
-    """Move what is in one folder into another, all of it or nothing."""
-    moved: list[Path] = []
-    try:
-        for path in sorted(source.iterdir()):
-            os.replace(path, target / path.name)
-            moved.append(target / path.name)
-    except BaseException:
-        for path in moved:
-            os.replace(path, source / path.name)
-        raise
-
-
-def _umask() -> int:
-    """The process's file mode mask; `tempfile` makes folders private, this one is for its user to share."""
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
@@ -29,7 +29,7 @@ LISTED = 3
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A scenario of a benchmark and what is known of it.
+    """A scenario of a benchmark and the results known for it.
 
     Attributes:
         name: the scenario's name, unique in the folder.
@@ -49,14 +49,14 @@ def read_cases(folder: StrPath, tell: Callable[[str], None] | None = None) -> li
 
     Cases are TAPTC task files ``group*/*.txt`` (agent files in ``agent/``), and ``*.json`` and ``*.csv``
     scenarios in the folder itself, in small or capital letters. JSON and CSV files of this package that are no
-    scenarios, such as plans and their schedules, are passed over. If there is a ``reference.csv`` with columns
+    scenarios, such as plans and their schedules, are skipped. If there is a ``reference.csv`` with columns
     ``case,tasks,robots`` and one for each method, its whole numbers of completed tasks become the references; rows of
-    other cases are passed over, and a cell may be empty.
+    other cases are skipped, and a cell may be empty.
 
     Args:
         folder: where they are.
-        tell: is told, in a sentence, of rows of the reference table that seem to be for cases of the folder, but match
-            none; by default `warnings.warn`.
+        tell: called with a sentence about rows of the reference table that seem to be for cases of the folder, but
+            match none; by default `warnings.warn`.
 
     Raises:
         ScenarioError: if there is no such folder, it holds no case, two cases share a name, or a file is
@@ -75,24 +75,7 @@ def read_cases(folder: StrPath, tell: Callable[[str], None] | None = None) -> li
             f"{root} cannot be listed: {(error.strerror or str(error)).lower()}; expected a folder of cases"
         ) from None
     tables = [path for path in paths if path.name.lower() == REFERENCE_FILE]
-    sources: dict[str, Path] = {}
-    scenarios: dict[str, Scenario] = {}
-    for path in paths:
-        if path in tables or is_other_json(path):
-            continue
-        try:
-            scenario = read_scenario(path)
-        except ScenarioError:
-            if is_other_csv(path):
-                continue
-            raise
-        if scenario.name in sources:
-            raise ScenarioError(
-                f"{path}: the case is called {shown(scenario.name)}, as in {sources[scenario.name]}; "
-                "expected a different name for each case"
-            )
-        sources[scenario.name] = path
-        scenarios[scenario.name] = scenario
+    scenarios = _read_scenarios(path for path in paths if path not in tables)
     if not scenarios:
         raise ScenarioError(f"{root} holds no cases; expected group*/*.txt (TAPTC), *.json or *.csv files")
     if len(tables) > 1:
@@ -107,6 +90,29 @@ def read_cases(folder: StrPath, tell: Callable[[str], None] | None = None) -> li
         best_known = max(reference.values(), default=None)
         cases.append(Case(name, scenarios[name], best_known, reference))
     return cases
+
+
+def _read_scenarios(paths: Iterable[Path]) -> dict[str, Scenario]:
+    """The scenarios in these files by their names; files of this package that hold none are skipped."""
+    sources: dict[str, Path] = {}
+    scenarios: dict[str, Scenario] = {}
+    for path in paths:
+        if is_other_json(path):
+            continue
+        try:
+            scenario = read_scenario(path)
+        except ScenarioError:
+            if is_other_csv(path):
+                continue
+            raise
+        if scenario.name in sources:
+            raise ScenarioError(
+                f"{path}: the case is called {shown(scenario.name)}, as in {sources[scenario.name]}; "
+                "expected a different name for each case"
+            )
+        sources[scenario.name] = path
+        scenarios[scenario.name] = scenario
+    return scenarios
 
 
 def _files_of_cases(root: Path) -> list[Path]:

@@ -12,23 +12,22 @@ from __future__ import annotations
 import csv
 import io
 import math
+from collections.abc import Sequence
 from pathlib import Path
+from typing import get_args
 
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, in_id_order, place_in_file
+from mrta_zoo.io.parts import MapRow, Part, Row, in_id_order, place_in_file, robot_rows, task_rows
 from mrta_zoo.io.paths import suffix_of
 from mrta_zoo.io.source import StrPath, number, shown, write_text
 from mrta_zoo.io.table import read_table
-from mrta_zoo.scenario import Scenario
+from mrta_zoo.quantities import Quantity, Who
+from mrta_zoo.scenario import QUANTITIES, Scenario, quantities_of
 
-COLUMNS = ("kind", "x", "y", "deadline", "workload", "capacity", "speed")
+PLACE = ("kind", "x", "y")
 NAMING = ("name", "id")
-_OF_KIND = {
-    "task": (*NAMING, "deadline", "workload"),
-    "robot": (*NAMING, "capacity", "speed"),
-    "map": (),
-    "origin": (),
-}
+KINDS = ("task", "robot", "map", "origin")
+COLUMNS = (*PLACE, *(each.name for who in get_args(Who) for each in quantities_of(who)))
 
 OTHERS = (("robot", "robot_name", "task"), ("case", "method", "completed"), ("update", "episodes", "completion"))
 """Columns by which schedules, rows of measurements and histories of training are known."""
@@ -43,24 +42,23 @@ def read_csv_part(path: StrPath) -> Part:
     table = read_table(path, ScenarioError)
     header_where, header = table[0][0], [column.lower() for column in table[0][1]]
     _check_header(header_where, header)
-    tasks: list[tuple[str, TaskRow]] = []
-    robots: list[tuple[str, RobotRow]] = []
+    rows: dict[str, list[tuple[str, Row]]] = {"task": [], "robot": []}
     once: dict[str, tuple[str, float, float]] = {}
     for where, cells in table[1:]:
         row = dict(zip(header, cells, strict=True))
         kind = row["kind"]
-        if kind not in _OF_KIND:
+        if kind not in KINDS:
             raise ScenarioError(f"{where}: kind is {shown(kind)}; expected task, robot, map or origin")
-        _check_empty(where, kind, row)
+        quantities = [each for each in QUANTITIES if each.who == kind]
+        _check_empty(where, kind, row, quantities)
         x, y = (_cell(row, where, what, 0 if kind == "map" else -math.inf, strict=kind == "map") for what in "xy")
-        number, name = row.get("id", ""), row.get("name", "")
-        if kind == "task":
-            deadline, workload = _cell(row, where, "deadline", strict=True), _cell(row, where, "workload")
-            tasks.append((number, TaskRow(where, x, y, deadline, workload, name)))
-        elif kind == "robot":
-            capacity = _cell(row, where, "capacity", strict=True)
-            speed = _cell(row, where, "speed", strict=True) if row.get("speed") else 1.0
-            robots.append((number, RobotRow(where, x, y, capacity, speed, name)))
+        if kind in rows:
+            values = {
+                each.name: _cell(row, where, each.name, strict=each.positive)
+                for each in quantities
+                if each.default is None or row.get(each.name)
+            }
+            rows[kind].append((row.get("id", ""), Row(where, x, y, values, row.get("name", ""))))
         elif kind in once:
             raise ScenarioError(
                 f"{where}: a second {kind} row, after {place_in_file(once[kind][0])}; expected at most one"
@@ -69,8 +67,8 @@ def read_csv_part(path: StrPath) -> Part:
             once[kind] = where, x, y
     return Part(
         path=str(path),
-        tasks=in_id_order(tasks, "task"),
-        robots=in_id_order(robots, "robot"),
+        tasks=in_id_order(rows["task"], "task"),
+        robots=in_id_order(rows["robot"], "robot"),
         map=_map(once),
         name=Path(path).stem,
     )
@@ -101,25 +99,16 @@ def write_csv(scenario: Scenario, path: StrPath) -> None:
     Raises:
         ScenarioError: if the file cannot be written.
     """
-    named = scenario.task_names or scenario.robot_names
+    quantities = {**scenario.said("task"), **scenario.said("robot")}
+    naming = ["name"] if scenario.task_names or scenario.robot_names else []
     stream = io.StringIO()
-    writer = csv.writer(stream, lineterminator="\n")
-
-    def write(kind: str, x: float, y: float, numbers: tuple[object, ...] = ("",) * 4, name: str = "") -> None:
-        writer.writerow((kind, x, y, *numbers, *([name] if named else ())))
-
-    writer.writerow((*COLUMNS, "name") if named else COLUMNS)
-    write("map", *scenario.map_size)
+    writer = csv.DictWriter(stream, [*PLACE, *quantities, *naming], lineterminator="\n")
+    writer.writeheader()
+    writer.writerow(dict(zip(PLACE, ("map", *scenario.map_size), strict=True)))
     if scenario.map_origin != (0.0, 0.0):
-        write("origin", *scenario.map_origin)
-    for task, ((x, y), deadline, workload) in enumerate(
-        zip(scenario.task_xy.tolist(), scenario.deadline.tolist(), scenario.workload.tolist(), strict=True)
-    ):
-        write("task", x, y, (deadline, workload, "", ""), scenario.task_name(task) if scenario.task_names else "")
-    for robot, ((x, y), capacity, speed) in enumerate(
-        zip(scenario.robot_xy.tolist(), scenario.capacity.tolist(), scenario.speed.tolist(), strict=True)
-    ):
-        write("robot", x, y, ("", "", capacity, speed), scenario.robot_name(robot) if scenario.robot_names else "")
+        writer.writerow(dict(zip(PLACE, ("origin", *scenario.map_origin), strict=True)))
+    for who, rows in (("task", task_rows(scenario)), ("robot", robot_rows(scenario))):
+        writer.writerows({"kind": who, **row} for row in rows)
     write_text(stream.getvalue(), path, ScenarioError)
 
 
@@ -133,14 +122,14 @@ def _check_header(where: str, header: list[str]) -> None:
             )
         if header.count(column) > 1:
             raise ScenarioError(f"{where}: column {shown(column)} appears twice; expected each column once")
-    for column in ("kind", "x", "y"):
+    for column in PLACE:
         if column not in header:
             raise ScenarioError(f"{where}: column {shown(column)} is missing; expected {', '.join(COLUMNS)}")
 
 
-def _check_empty(where: str, kind: str, row: dict[str, str]) -> None:
+def _check_empty(where: str, kind: str, row: dict[str, str], quantities: Sequence[Quantity]) -> None:
     """A value that its kind cannot have is a slip of columns more often than not."""
-    own = ("kind", "x", "y", *_OF_KIND[kind])
+    own = (*PLACE, *(each.name for each in quantities), *(NAMING if quantities else ()))
     for column, cell in row.items():
         if cell and column not in own:
             article = "an" if kind == "origin" else "a"

@@ -1,4 +1,4 @@
-"""Whether a file can be written, asked before the work that it is for."""
+"""Checks, before the work, that its results can be written."""
 
 from __future__ import annotations
 
@@ -41,20 +41,21 @@ def check_destination(path: Path) -> None:
         raise ConfigError(f"{path} is where standard output goes; expected a file of its own")
 
 
-def check_distinct(outputs: Mapping[str, Path | None], inputs: Mapping[str, Path | None]) -> None:
-    """Make sure that no output overwrites an input or another output.
+def check_outputs(outputs: Mapping[str, Path | None], inputs: Mapping[str, Path | None]) -> None:
+    """Make sure, as far as can be told, that all outputs can be written, and none overwrites an input or another.
 
     Args:
         outputs: files to be written, by their flags; None for those that are not.
         inputs: files that are read, by what they are.
 
     Raises:
-        ConfigError: if one does.
+        ConfigError: if one cannot, or does.
     """
     taken = {what: path for what, path in inputs.items() if path is not None}
-    for flag, path in outputs.items():
-        if path is None:
-            continue
+    wanted = {flag: path for flag, path in outputs.items() if path is not None}
+    for path in wanted.values():
+        check_destination(path)
+    for flag, path in wanted.items():
         for what, other in taken.items():
             if _same_file(path, other):
                 raise ConfigError(f"{flag} is {path}, which is {what}; expected a file of its own")

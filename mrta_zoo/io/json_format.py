@@ -1,31 +1,26 @@
-"""Scenarios and plans as JSON, read strictly. The schemas lie beside this module as ``*.schema.json``."""
+"""Scenarios as JSON, read strictly. The schema is ``scenario.schema.json``."""
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import msgspec
 from msgspec import Meta
 
-from mrta_zoo.errors import PlanError, ScenarioError
-from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, in_id_order
+from mrta_zoo.errors import ScenarioError
+from mrta_zoo.io.parts import MapRow, Part, Row, in_id_order, robot_rows, task_rows
 from mrta_zoo.io.paths import suffix_of
 from mrta_zoo.io.source import StrPath, read_text
 from mrta_zoo.io.strict_json import read_document, write_document
-from mrta_zoo.left_out import Reason
-from mrta_zoo.plan import Plan
-from mrta_zoo.scenario import Scenario
-from mrta_zoo.wording import composed
+from mrta_zoo.quantities import Who
+from mrta_zoo.scenario import Scenario, quantities_of
 
 Positive = Annotated[float, Meta(gt=0)]
 NonNegative = Annotated[float, Meta(ge=0)]
 Index = Annotated[int, Meta(ge=0)]
-
-
 Name = Annotated[str, Meta(min_length=1)] | int
 
 
@@ -41,32 +36,46 @@ class MapJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     y: float | None = None
 
 
-class TaskJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One task: its place, the latest finish that counts, the work to be done, its name, and its id.
+def _row_json(title: str, description: str, who: Who) -> type[msgspec.Struct]:
+    """The form of a task or robot: a place, the quantities of the field table, a name and an id."""
+    quantities = [
+        (each.name, Positive if each.positive else NonNegative, *(() if each.default is None else (each.default,)))
+        for each in quantities_of(who)
+    ]
+    return msgspec.defstruct(
+        title,
+        [("x", float), ("y", float), *quantities, ("name", Name | None, None), ("id", Name | None, None)],
+        namespace={"__doc__": description},
+        module=__name__,
+        frozen=True,
+        forbid_unknown_fields=True,
+    )
+
+
+if TYPE_CHECKING:
+
+    class RowJson(msgspec.Struct):
+        x: float
+        y: float
+        name: Name | None
+        id: Name | None
+
+    TaskJson = RowJson
+    RobotJson = RowJson
+else:
+    TaskJson = _row_json(
+        "TaskJson",
+        """One task: its place, the latest finish that counts, the work to be done, its name, and its id.
 
     Where the ids are each of 0..N-1 once they number the tasks; otherwise they are names of those that have no name.
-    """
-
-    x: float
-    y: float
-    deadline: Positive
-    workload: NonNegative
-    name: Name | None = None
-    id: Name | None = None
-
-
-class RobotJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One robot: its start, its work and its way per time unit, its name, and its id, as those of tasks."""
-
-    x: float
-    y: float
-    capacity: Positive
-    speed: Positive = 1.0
-    name: Name | None = None
-    id: Name | None = None
-
-
-RowJson = TypeVar("RowJson", TaskJson, RobotJson)
+    """,
+        "task",
+    )
+    RobotJson = _row_json(
+        "RobotJson",
+        "One robot: its start, its work and its way per time unit, its name, and its id, as those of tasks.",
+        "robot",
+    )
 
 
 class ScenarioJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -80,100 +89,24 @@ class ScenarioJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     map: MapJson | None = None
 
 
-class ScheduledTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
-    """One stop of a robot: when it arrives, when it finishes, and whether that met the deadline.
-
-    The names of the task and the robot are there if they have one.
-    """
-
-    task: Index
-    arrival: NonNegative
-    finish: NonNegative
-    deadline: Positive
-    completed: bool
-    name: str | None = None
-    robot_name: str | None = None
-
-
-class LeftOutTask(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
-    """A task that nobody takes, its name if it has one, and why.
-
-    It is out of reach if no robot could finish it by its deadline, even if it went straight there at the start.
-    """
-
-    task: Index
-    reason: Reason
-    name: str | None = None
-
-
-class PlanScore(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What the plan achieves: completed of all tasks, their share, cost (Eq. 1), distance and makespan."""
-
-    completed: Index
-    tasks: Index
-    completion: Annotated[float, Meta(ge=0, le=1)]
-    cost: NonNegative
-    distance: NonNegative
-    makespan: NonNegative
-
-
-class PlanJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A plan file: for each robot its tasks in order, for people its schedule and score, and what no plan exceeds.
-
-    What is left out is for people, too, as are names: tasks and robots are known by their numbers, from 0.
-    """
-
-    format: Literal["mrta_zoo.plan"]
-    version: Literal[1]
-    routes: tuple[tuple[Index, ...], ...]
-    scenario: str = ""
-    method: str = ""
-    schedule: tuple[tuple[ScheduledTask, ...], ...] | None = None
-    score: PlanScore | None = None
-    left_out: tuple[LeftOutTask, ...] | None = None
-    bound: Index | None = None  # completed tasks
-
-
-_PARTS: dict[str, type[msgspec.Struct]] = {
-    "map": MapJson,
-    "tasks": TaskJson,
-    "robots": RobotJson,
-    "schedule": ScheduledTask,
-    "score": PlanScore,
-    "left_out": LeftOutTask,
-}
-
-
 def read_json_part(path: StrPath) -> Part:
-    """What a JSON scenario file says; without a name the scenario is called like the file.
+    """What a JSON scenario file says; without a name the scenario is called by the file's.
 
     Raises:
         ScenarioError: if it is missing or malformed.
     """
-    data = read_document(path, ScenarioJson, _PARTS, ScenarioError)
+    data = read_document(path, ScenarioJson, ScenarioError)
     return json_part(path, data.map, data.tasks, data.robots, data.name or Path(path).stem)
 
 
 def json_part(
-    path: StrPath, size: MapJson | None, tasks: Sequence[TaskJson], robots: Sequence[RobotJson], name: str
+    path: StrPath, size: MapJson | None, tasks: Sequence[RowJson], robots: Sequence[RowJson], name: str
 ) -> Part:
-    """What any JSON file that holds a scenario says of it."""
+    """What a JSON file that holds a scenario, alone or with other things, says of it."""
     return Part(
         path=str(path),
-        tasks=in_id_order(
-            [
-                (_text(task.id), TaskRow(where, task.x, task.y, task.deadline, task.workload, _text(task.name)))
-                for where, task in _placed(path, "tasks", tasks)
-            ],
-            "task",
-        ),
-        robots=in_id_order(
-            [
-                (_text(robot.id), RobotRow(where, robot.x, robot.y, robot.capacity, robot.speed, _text(robot.name)))
-                for where, robot in _placed(path, "robots", robots)
-            ],
-            "robot",
-        ),
+        tasks=in_id_order(_rows(f"{path}: tasks", tasks, "task"), "task"),
+        robots=in_id_order(_rows(f"{path}: robots", robots, "robot"), "robot"),
         map=None if size is None else _map(path, size),
         name=name,
     )
@@ -186,9 +119,13 @@ def _map(path: StrPath, size: MapJson) -> MapRow:
     return MapRow(f"{path}: map", size.width, size.height, x, y)
 
 
-def _placed(path: StrPath, field: str, rows: Sequence[RowJson]) -> Iterator[tuple[str, RowJson]]:
-    """Rows with where they stand."""
-    return ((f"{path}: {field}[{index}]", row) for index, row in enumerate(rows))
+def _rows(where: str, rows: Sequence[RowJson], who: Who) -> list[tuple[str, Row]]:
+    """Rows with their ids."""
+    found = []
+    for index, row in enumerate(rows):
+        values = {each.name: getattr(row, each.name) for each in quantities_of(who)}
+        found.append((_text(row.id), Row(f"{where}[{index}]", row.x, row.y, values, _text(row.name))))
+    return found
 
 
 def _text(name: Name | None) -> str:
@@ -216,7 +153,7 @@ class _Head(msgspec.Struct):
 
 
 def write_json(scenario: Scenario, path: StrPath) -> None:
-    """Write a scenario, exactly, one task or robot a line.
+    """Write a scenario, exactly, with one line per task and robot.
 
     Raises:
         ScenarioError: if the file cannot be written.
@@ -227,69 +164,10 @@ def write_json(scenario: Scenario, path: StrPath) -> None:
 
 def scenario_fields(scenario: Scenario) -> dict[str, Any]:
     """The fields that hold a scenario in any JSON file."""
-    tasks = zip(scenario.task_xy.tolist(), scenario.deadline.tolist(), scenario.workload.tolist(), strict=True)
-    robots = zip(scenario.robot_xy.tolist(), scenario.capacity.tolist(), scenario.speed.tolist(), strict=True)
     corner = {} if scenario.map_origin == (0.0, 0.0) else dict(zip("xy", scenario.map_origin, strict=True))
     return {
         "name": scenario.name,
         "map": {"width": scenario.map_size[0], "height": scenario.map_size[1], **corner},
-        "tasks": [
-            {**_named(scenario.task_names, index), "x": x, "y": y, "deadline": due, "workload": work}
-            for index, ((x, y), due, work) in enumerate(tasks)
-        ],
-        "robots": [
-            {**_named(scenario.robot_names, index), "x": x, "y": y, "capacity": rate, "speed": speed}
-            for index, ((x, y), rate, speed) in enumerate(robots)
-        ],
+        "tasks": task_rows(scenario),
+        "robots": robot_rows(scenario),
     }
-
-
-def _named(names: tuple[str, ...], index: int) -> dict[str, str]:
-    return {"name": names[index]} if names else {}
-
-
-def read_plan(path: StrPath) -> Plan:
-    """The plan of a JSON plan file. What is there for people is checked for form only, and dropped.
-
-    Raises:
-        PlanError: if the file is missing or malformed.
-    """
-    data = read_document(path, PlanJson, _PARTS, PlanError)
-    return Plan(routes=data.routes, scenario=composed(data.scenario), method=data.method, bound=data.bound)
-
-
-def write_plan(
-    plan: Plan,
-    path: StrPath,
-    *,
-    schedule: Sequence[Sequence[ScheduledTask]] | None = None,
-    score: PlanScore | None = None,
-    left_out: Sequence[LeftOutTask] | None = None,
-) -> None:
-    """Write a plan, one route a line, and for people the schedule (a sequence for each robot), score and the rest.
-
-    Raises:
-        PlanError: if the file cannot be written.
-    """
-    document: dict[str, Any] = {
-        "format": "mrta_zoo.plan",
-        "version": 1,
-        "scenario": plan.scenario,
-        "method": plan.method,
-        "routes": [list(route) for route in plan.routes],
-    }
-    if plan.bound is not None:
-        document["bound"] = plan.bound
-    if score is not None:
-        document["score"] = msgspec.to_builtins(score)
-    if left_out is not None:
-        document["left_out"] = msgspec.to_builtins(left_out)
-    if schedule is not None:
-        document["schedule"] = [[msgspec.to_builtins(stop) for stop in stops] for stops in schedule]
-    write_document(document, path, PlanError)
-
-
-def schema_text(document: type[msgspec.Struct]) -> str:
-    """The JSON Schema of a kind of file, as it lies beside this module."""
-    schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(document)}
-    return json.dumps(schema, indent=2) + "\n"

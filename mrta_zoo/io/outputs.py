@@ -1,4 +1,4 @@
-"""Writing what has been worked out, so that nothing of it is lost where something cannot be written."""
+"""Writing results, so that none is lost when another cannot be written."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from mrta_zoo.errors import ConfigError, MrtaError
 
 
 class Outputs:
-    """Writes one thing after the other; the first that fails is told at the end, when all else is written and printed.
+    """Writes one result after the other; failures are reported at the end, when all else is written and printed.
 
-    What cannot be written to its place, as the disk is full or the folder has gone, is written to a new folder for
-    temporary files.
+    What cannot be written to its place, because the disk is full or the folder has gone, is written to a new temporary
+    folder.
 
     >>> with Outputs() as outputs:
     ...     outputs.write("plan", Path("plan.json"), lambda path: write_plan(plan, path))
     ...     print(*outputs.written)
 
     Attributes:
-        written: a line for each thing that is where it should be, "plan written to plan.json".
+        written: one line per result that was written to its place, "plan written to plan.json".
     """
 
     def __init__(self) -> None:
@@ -31,15 +31,15 @@ class Outputs:
         self._problems: list[Exception] = []
 
     def write(self, what: str, path: Path, write: Callable[[Path], object]) -> Path | None:
-        """Write a thing.
+        """Write a result.
 
         Args:
-            what: it is called.
+            what: what the result is called.
             path: its place.
             write: writes it to the path that it is given.
 
         Returns:
-            Where it is now; None if nowhere.
+            Where it was written; None if nowhere.
         """
         try:
             write(path)
@@ -65,14 +65,14 @@ class Outputs:
 
 
 def write_elsewhere(path: Path, write: Callable[[Path], object]) -> Path | None:
-    """Write something that its place could not take to a new folder for temporary files.
+    """Write something that could not be written to its place to a new temporary folder.
 
     Args:
         path: its place, whose name it keeps.
         write: writes it to the path that it is given.
 
     Returns:
-        Where it is now; None if it cannot be written there either.
+        Where it was written; None if it cannot be written there either.
     """
     with suppress(Exception):
         folder = Path(tempfile.mkdtemp(prefix="mrta_zoo."))

@@ -4,60 +4,49 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import NamedTuple, TypeVar
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from mrta_zoo.digits import full
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.source import check_name, shown
-from mrta_zoo.scenario import (
-    BOUNDS,
-    LARGEST,
-    SMALLEST,
-    Scenario,
-    map_origin_for,
-    square_around,
-    usable_name,
-)
+from mrta_zoo.map import square_around
+from mrta_zoo.names import usable_name
+from mrta_zoo.quantities import BOUNDS, COORDINATE, LARGEST, SMALLEST, FloatArray, RowError, Who
+from mrta_zoo.scenario import QUANTITIES, Scenario
 from mrta_zoo.wording import composed, counted
 
 
-class TaskRow(NamedTuple):
-    """One task as read: where it stands ("file, line 3"), its place, deadline > 0, workload >= 0, and maybe a name."""
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One task or robot as read.
+
+    Attributes:
+        where: it stands: "file, line 3".
+        x: its place, or where it starts.
+        y: likewise.
+        values: its quantities, see `mrta_zoo.scenario.QUANTITIES`; those with a default may be missing.
+        name: what people call it, maybe nothing.
+    """
 
     where: str
     x: float
     y: float
-    deadline: float
-    workload: float
-    name: str = ""
-
-
-class RobotRow(NamedTuple):
-    """One robot as read: where it stands ("file, line 3"), its start, capacity > 0, speed > 0, and maybe a name."""
-
-    where: str
-    x: float
-    y: float
-    capacity: float
-    speed: float
+    values: Mapping[str, float]
     name: str = ""
 
 
 class MapRow(NamedTuple):
-    """The map as read: where it stands, its width > 0 and height > 0, and its lowest x and y, NaN if not said."""
+    """The map as read: where it stands, its size, and its lowest x and y, NaN if not said."""
 
     where: str
     width: float
     height: float
     x: float = math.nan
     y: float = math.nan
-
-
-Row = TypeVar("Row", TaskRow, RobotRow)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +63,8 @@ class Part:
     """
 
     path: str
-    tasks: tuple[TaskRow, ...] = ()
-    robots: tuple[RobotRow, ...] = ()
+    tasks: tuple[Row, ...] = ()
+    robots: tuple[Row, ...] = ()
     map: MapRow | None = None
     name: str = ""
     num_robots: int | None = None
@@ -84,7 +73,7 @@ class Part:
 def assemble(main: Part, agents: Part | None) -> Scenario:
     """The scenario of a file that has all, or of a file with tasks and another with the robots.
 
-    Without a map in either file it is `mrta_zoo.scenario.square_around` all places.
+    Without a map in either file it is `mrta_zoo.map.square_around` all places.
 
     Raises:
         ScenarioError: if something is missing or said twice, a number is too small or large, or a place is outside
@@ -111,33 +100,38 @@ def assemble(main: Part, agents: Part | None) -> Scenario:
             f"{agents.path} has {counted(len(agents.robots), 'robot')}; expected {main.num_robots}, "
             f"the number in line 1 of {main.path}"
         )
-    for each in (main.map, *main.tasks, agents.map, *agents.robots):
-        if each is not None:
-            check_magnitudes(each)
-    rows: tuple[TaskRow | RobotRow, ...] = (*main.tasks, *agents.robots)
-    places = np.array([(row.x, row.y) for row in rows])
+    rows_of: dict[Who, tuple[Row, ...]] = {"task": main.tasks, "robot": agents.robots}
+    for row in (*main.tasks, *agents.robots):
+        for letter, value in (("x", row.x), ("y", row.y)):
+            _check_number(row.where, letter, value, -LARGEST, COORDINATE)
+    places = np.array([(row.x, row.y) for row in (*main.tasks, *agents.robots)])
     said = _map_of(main, agents)
     size, origin = (said[1:3], said[3:]) if said else square_around(places)
-    if any(map(math.isnan, origin)):
-        origin = map_origin_for(places, size)
-    check_inside(rows, size, origin)
-    return Scenario(
-        task_xy=[(row.x, row.y) for row in main.tasks],  # type: ignore[arg-type]
-        deadline=[row.deadline for row in main.tasks],  # type: ignore[arg-type]
-        workload=[row.workload for row in main.tasks],  # type: ignore[arg-type]
-        robot_xy=[(row.x, row.y) for row in agents.robots],  # type: ignore[arg-type]
-        capacity=[row.capacity for row in agents.robots],  # type: ignore[arg-type]
-        speed=[row.speed for row in agents.robots],  # type: ignore[arg-type]
-        map_size=size,
-        name=composed(main.name),
-        map_origin=origin,
-        task_names=_names(main.tasks, "task"),
-        robot_names=_names(agents.robots, "robot"),
-    )
+    try:
+        return Scenario(
+            task_xy=places[: len(main.tasks)],
+            robot_xy=places[len(main.tasks) :],
+            map_size=size,
+            name=composed(main.name),
+            map_origin=origin,
+            task_names=_names(main.tasks, "task"),
+            robot_names=_names(agents.robots, "robot"),
+            **{  # type: ignore[arg-type]
+                each.name: [row.values.get(each.name, each.default) for row in rows_of[each.who]] for each in QUANTITIES
+            },
+        )
+    except RowError as error:
+        raise ScenarioError(f"{rows_of[error.who][error.index].where}: {error.complaint}") from None
 
 
 def _map_of(main: Part, agents: Part) -> MapRow | None:
     """What either file says of the map."""
+    for each in filter(None, (main.map, agents.map)):
+        for what in ("width", "height"):
+            _check_number(each.where, what, getattr(each, what), SMALLEST, f"a number > 0{BOUNDS}")
+        for what in "xy":
+            if not math.isnan(getattr(each, what)):
+                _check_number(each.where, what, getattr(each, what), -LARGEST, COORDINATE)
     if main.map and agents.map and repr(main.map[1:]) != repr(agents.map[1:]):  # as texts, in which NaN equals NaN
         raise ScenarioError(
             f"{agents.map.where}: map is {_map_text(agents.map)}; expected {_map_text(main.map)} as in {main.path}"
@@ -151,11 +145,11 @@ def _map_text(row: MapRow) -> str:
     )
 
 
-def _names(rows: Sequence[TaskRow | RobotRow], who: str) -> tuple[str, ...]:
+def _names(rows: Sequence[Row], who: Who) -> tuple[str, ...]:
     """The names of rows, of which all have one or none has."""
     if not any(row.name for row in rows):
         return ()
-    first: dict[str, TaskRow | RobotRow] = {}
+    first: dict[str, Row] = {}
     for row in rows:
         if not row.name:
             raise ScenarioError(f"{row.where}: this {who} has no name; expected one for each {who}, as others have one")
@@ -174,28 +168,9 @@ def _names(rows: Sequence[TaskRow | RobotRow], who: str) -> tuple[str, ...]:
     return tuple(first)
 
 
-def check_magnitudes(row: TaskRow | RobotRow | MapRow) -> None:
-    """Raises ScenarioError for a number of a row that `Scenario` would refuse without saying where it stands."""
-    for what, value in row._asdict().items():
-        if isinstance(value, str) or math.isnan(value):
-            continue
-        low = {"x": -LARGEST, "y": -LARGEST, "workload": 0.0}.get(what, SMALLEST)
-        if not low <= value <= LARGEST:
-            expected = f"a number > 0{BOUNDS}" if low == SMALLEST else f"a number from {low:g} to {LARGEST:g}"
-            raise ScenarioError(f"{row.where}: {what} is {value!r}; expected {expected}")
-
-
-def check_inside(
-    rows: Sequence[TaskRow | RobotRow], map_size: tuple[float, float], origin: tuple[float, float]
-) -> None:
-    """Raises ScenarioError for the first row whose place is outside the map."""
-    for row in rows:
-        for letter, value, low, side in zip("xy", (row.x, row.y), origin, map_size, strict=True):
-            if not low <= value <= low + side:
-                raise ScenarioError(
-                    f"{row.where}: {letter} is {value!r}; expected a number from {low:g} to {low + side!r}, "
-                    "inside the map"
-                )
+def _check_number(where: str, what: str, value: float, least: float, expected: str) -> None:
+    if not least <= value <= LARGEST:
+        raise ScenarioError(f"{where}: {what} is {value!r}; expected {expected}")
 
 
 def place_in_file(where: str) -> str:
@@ -227,4 +202,20 @@ def in_id_order(rows: Sequence[tuple[str, Row]], what: str) -> tuple[Row, ...]:
     numbers = [str(index) for index in range(len(rows))]
     if first.keys() == set(numbers):
         return tuple(first[number] for number in numbers)
-    return tuple(row if row.name else row._replace(name=given) for given, row in rows)
+    return tuple(row if row.name else replace(row, name=given) for given, row in rows)
+
+
+def task_rows(scenario: Scenario) -> list[dict[str, Any]]:
+    """The tasks of a scenario as files hold them: name, if they have names, x, y and the quantities that are said."""
+    return _rows(scenario.task_names, scenario.task_xy, scenario.said("task"))
+
+
+def robot_rows(scenario: Scenario) -> list[dict[str, Any]]:
+    """The robots likewise."""
+    return _rows(scenario.robot_names, scenario.robot_xy, scenario.said("robot"))
+
+
+def _rows(names: Sequence[str], places: FloatArray, quantities: Mapping[str, FloatArray]) -> list[dict[str, Any]]:
+    columns = {**({"name": names} if names else {}), "x": places[:, 0].tolist(), "y": places[:, 1].tolist()}
+    columns |= {name: values.tolist() for name, values in quantities.items()}
+    return [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]

@@ -1,4 +1,4 @@
-"""Dataclasses as the rows of a CSV file, one column a field: text, numbers and truth values."""
+"""Dataclasses as the rows of a CSV file, one column per field: text, numbers and truth values."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def write_records(rows: Sequence[DataclassInstance], path: StrPath, of: type[Dat
     Args:
         rows: at least one, unless their class is given.
         path: the file.
-        of: their class, which gives the header; by default that of the first.
+        of: their class, which gives the header; by default the class of the first row.
 
     Raises:
         ConfigError: if there is no row or the file cannot be written.

@@ -29,7 +29,7 @@ def read_text(path: StrPath, error: type[MrtaError], expected: str = "a scenario
     Args:
         path: the file.
         error: what to raise.
-        expected: what messages say that it should hold.
+        expected: what the file should hold, for messages.
 
     Raises:
         error: if there is no such file, it cannot be read, is too large, or holds no text.
@@ -63,7 +63,7 @@ def decode(data: bytes, source: str, error: type[MrtaError]) -> str:
 
     Args:
         data: the bytes.
-        source: what messages call where they are from.
+        source: where they are from, for messages.
         error: what to raise.
 
     Raises:

@@ -1,11 +1,11 @@
-"""JSON documents as files, read strictly: whatever is wrong with one, a sentence says where and what."""
+"""JSON documents as files, read strictly: one sentence says what is wrong with a file, and where."""
 
 from __future__ import annotations
 
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Sequence
 from typing import Any, TypeVar, get_args, get_type_hints
 
 import msgspec
@@ -14,23 +14,14 @@ from mrta_zoo.errors import MrtaError
 from mrta_zoo.io.source import StrPath, check_name, read_text, shown, write_text
 
 Document = TypeVar("Document", bound=msgspec.Struct)
-Parts = Mapping[str, type[msgspec.Struct]]
 
 
-class _TokenError(Exception):
-    """Something in the text that JSON or Python's reader of it would let pass."""
-
-    def __init__(self, token: str, complaint: str) -> None:
-        self.token, self.complaint = token, complaint
-
-
-def read_document(path: StrPath, kind: type[Document], parts: Parts, error: type[MrtaError]) -> Document:
+def read_document(path: StrPath, kind: type[Document], error: type[MrtaError]) -> Document:
     """The document that a JSON file holds.
 
     Args:
         path: the file.
-        kind: the form of the whole, with fields `format` and `version` of one allowed value each.
-        parts: the form of its parts, by the top-level field they stand in.
+        kind: the form of the document, with fields `format` and `version` of one allowed value each.
         error: what to raise.
 
     Raises:
@@ -48,13 +39,13 @@ def read_document(path: StrPath, kind: type[Document], parts: Parts, error: type
             f"{path}, line {problem.lineno}, column {problem.colno}: {problem.msg.lower()} "
             f"at {shown(rest) if rest else 'the end of the line'}; expected JSON"
         ) from None
-    except _TokenError as problem:
-        raise error(f"{path}, line {_line_of(problem.token, text)}: {problem.complaint}") from None
+    except ValueError as problem:
+        raise error(f"{path}: {problem}") from None
     except RecursionError:
         raise error(f"{path} is nested too deeply; expected a {name} file") from None
     if not isinstance(document, dict):
-        raise error(f"{path} holds {shown(document)}; expected an object with {_fields(kind)}")
-    # Before all else, so that the wrong kind of file is called that.
+        raise error(f"{path} holds {shown(document)}; expected an object with {', '.join(kind.__struct_fields__)}")
+    # Before all else, so that a file of another kind is recognised as such.
     for field, expected in (("format", name), ("version", 1)):
         if field not in document:
             raise error(f"{path} has no field {field!r}; expected {field} {shown(expected)}")
@@ -64,13 +55,13 @@ def read_document(path: StrPath, kind: type[Document], parts: Parts, error: type
     try:
         return msgspec.convert(document, type=kind)
     except msgspec.ValidationError as problem:
-        raise error(_sentence(path, str(problem), document, kind, parts)) from None
-    except UnicodeEncodeError as problem:  # of text where a number or another key should be
+        raise error(_sentence(path, str(problem), document, kind)) from None
+    except UnicodeEncodeError as problem:  # text where a number or another key should be
         raise error(f"{path} holds the text {shown(problem.object)}; expected text without lone surrogates") from None
 
 
 def _check_names(document: dict[str, Any], path: StrPath, error: type[MrtaError]) -> None:
-    """Names are printed and written again, which some characters would upset."""
+    """Names are printed and written again, so some characters cannot be allowed."""
     for field in ("name", "scenario", "method", "decode"):
         value = document.get(field)
         if isinstance(value, str):
@@ -85,12 +76,12 @@ def _int(token: str) -> int | float:
 def _float(token: str) -> float:
     value = float(token)
     if not math.isfinite(value):
-        raise _TokenError(token, f"{shown(token)} is too large; expected a finite number")
+        raise ValueError(f"{shown(token)} is too large; expected a finite number")
     return value
 
 
 def _constant(token: str) -> float:
-    raise _TokenError(token, f"{token} is no JSON number; expected a finite number")
+    raise ValueError(f"{token} is no JSON number; expected a finite number")
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -98,52 +89,50 @@ def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(members) < len(pairs):
         names = [name for name, _ in pairs]
         twice = next(name for name in names if names.count(name) > 1)
-        raise _TokenError(twice, f"field {shown(twice)} appears twice in an object; expected it once")
+        raise ValueError(f"field {shown(twice)} appears twice in an object; expected it once")
     return members
 
 
-def _line_of(token: str, text: str) -> int:
-    """Line where a number, literal or field name first occurs as a whole token."""
-    for match in re.finditer(r'"((?:[^"\\]|\\.)*)"|[^\s,:\[\]{}"]+', text):
-        if token in (match[0], match[1]):
-            return text.count("\n", 0, match.start()) + 1
-    return 1
+_PLAIN = {"float": "a number", "int": "a whole number", "str": "text", "bool": "true or false", "array": "a list"}
+_PLAIN |= {"object": "an object", " | ": " or ", ".0": "", "`": ""}
 
 
-_PLACE = re.compile(r" - at `\$\.?([^`]*)`$")
-_EXPECTED = re.compile(r"Expected `([^`]*)`((?: of length)? [<>]=? [0-9.]+)?")
-_PLAIN = {
-    "float": "a number",
-    "int": "a whole number",
-    "str": "text",
-    "bool": "true or false",
-    "array": "a list",
-    "object": "an object",
-}
-
-
-def _sentence(path: StrPath, message: str, document: Any, kind: type[msgspec.Struct], parts: Parts) -> str:
+def _sentence(path: StrPath, problem: str, document: Any, kind: type[msgspec.Struct]) -> str:
     """msgspec's complaint about a document as a sentence that also shows the value."""
-    found = _PLACE.search(message)
-    complaint, place = (message[: found.start()], found[1]) if found else (message, "")
+    complaint, _, place = problem.partition(" - at `$")
+    place = place.strip(".`")
+    steps = re.findall(r"\w+", place)
     value = document
-    for name, index in re.findall(r"(\w+)(?!\w*\])|\[(\d+)\]", place):
-        value = value[int(index)] if index else value[name]
+    for step in steps:
+        value = value[int(step) if isinstance(value, list) else step]
     where = f"{path}: {place}" if place else str(path)
-    if field := re.search(r"(unknown|required) field `(.*)`", complaint, re.DOTALL):
-        fields = _fields(parts[re.split(r"\W", place)[0]] if place else kind)
-        if field[1] == "required":
-            return f"{where} has no field {shown(field[2])}; expected {fields}"
-        return f"{where} has an unknown field {shown(field[2])}; expected only {fields}"
+    if complaint.startswith("Object"):  # contains unknown field `…`, or missing required field `…`
+        number, only = ("an unknown", "only ") if "unknown" in complaint else ("no", "")
+        field, fields = complaint.partition("`")[2][:-1], ", ".join(_schema_at(kind, steps)["properties"])
+        return f"{where} has {number} field {shown(field)}; expected {only}{fields}"
     if complaint.startswith("Invalid enum value"):
-        way = re.split(r"\W+", place)
-        allowed = get_type_hints(kind if len(way) == 1 else parts[way[0]])[way[-1]]
-        return f"{where} is {shown(value)}; expected one of {', '.join(get_args(allowed))}"
-    expected = _EXPECTED.match(complaint)
-    if not expected:
+        return f"{where} is {shown(value)}; expected one of {', '.join(_schema_at(kind, steps)['enum'])}"
+    if not complaint.startswith("Expected"):
         return f"{where} is {shown(value)}; {complaint}"
-    names = " or ".join(_PLAIN.get(name, name) for name in expected[1].split(" | "))
-    return f"{where} is {shown(value)}; expected {names}{(expected[2] or '').removesuffix('.0')}"
+    expected = complaint.removeprefix("Expected ").partition(", got")[0]
+    for word, plain in _PLAIN.items():
+        expected = expected.replace(word, plain)
+    return f"{where} is {shown(value)}; expected {expected}"
+
+
+def _schema_at(kind: type[msgspec.Struct], steps: Sequence[str]) -> dict[str, Any]:
+    """The JSON Schema of what stands at a place in a document."""
+    (schema,), parts = msgspec.json.schema_components([kind])
+
+    def resolved(schema: dict[str, Any]) -> dict[str, Any]:
+        first = schema.get("anyOf", [schema])[0]  # the other one is null
+        found: dict[str, Any] = parts[first["$ref"].rpartition("/")[2]] if "$ref" in first else first
+        return found
+
+    schema = resolved(schema)
+    for step in steps:
+        schema = resolved(schema["items"] if step.isdigit() else schema["properties"][step])
+    return schema
 
 
 def _format_of(kind: type[msgspec.Struct]) -> str:
@@ -152,12 +141,14 @@ def _format_of(kind: type[msgspec.Struct]) -> str:
     return name
 
 
-def _fields(kind: type[msgspec.Struct]) -> str:
-    return ", ".join(kind.__struct_fields__)
+def schema_text(document: type[msgspec.Struct]) -> str:
+    """The JSON Schema of a kind of file, as it lies beside this module."""
+    schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(document)}
+    return json.dumps(schema, indent=2) + "\n"
 
 
 def write_document(document: dict[str, Any], path: StrPath, error: type[MrtaError]) -> None:
-    """Write JSON with one element of each top-level list a line, to be read by people too.
+    """Write JSON that people can read, too: each element of a top-level list has a line of its own.
 
     Raises:
         error: if the file cannot be written, or a value cannot be read back.

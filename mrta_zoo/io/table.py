@@ -14,7 +14,7 @@ from mrta_zoo.wording import counted
 def read_table(path: StrPath, error: type[MrtaError]) -> list[tuple[str, list[str]]]:
     """Where each row of a CSV file stands, and its cells; at least the header.
 
-    Rows and columns with nothing in them, as spreadsheets leave them, are passed over; every row has as many cells as
+    Empty rows and columns, as spreadsheets leave them, are skipped; every row has as many cells as
     the header, but for empty ones at its end.
 
     Args:

@@ -2,8 +2,8 @@
 
 Task file: ``m dx dy`` or ``n m dx dy`` (m tasks, n agents, map dx x dy), then m lines
 ``id x y workload deadline``. Agent file: ``n dx dy``, then n lines ``id x y capacity``. Where the ids are each of
-0..N-1 once, in any order, they are the numbers of the tasks or robots; otherwise lines count in order and the ids are
-names. Where the map lies, if not at 0 and 0, `mrta_zoo.scenario.map_origin_for` says. Every robot has speed 1.
+0..N-1 once, in any order, they number the tasks or robots; otherwise these are numbered by their lines, and the ids are
+names. Where the map lies, if not at 0 and 0, `mrta_zoo.map.map_origin_for` says. Every robot has speed 1.
 """
 
 from __future__ import annotations
@@ -16,25 +16,16 @@ from pathlib import Path
 import numpy as np
 
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.io.parts import MapRow, Part, RobotRow, TaskRow, assemble, in_id_order
+from mrta_zoo.io.parts import MapRow, Part, Row, in_id_order
 from mrta_zoo.io.paths import as_spelt
 from mrta_zoo.io.source import StrPath, count, number, read_text, shown, write_text
-from mrta_zoo.scenario import Scenario, map_origin_for
+from mrta_zoo.map import map_origin_for
+from mrta_zoo.scenario import QUANTITIES, Scenario
 from mrta_zoo.wording import counted
 
 _CASE_NAME = re.compile(r"r[0-9]+(a[0-9]+i[0-9]+)", re.IGNORECASE)
 _TASK_LINE = "id x y workload deadline"
 _AGENT_LINE = "id x y capacity"
-
-
-def read_taptc(task_path: StrPath, agent_path: StrPath | None = None) -> Scenario:
-    """The scenario of a task file and its agent file, which `find_agent_file` finds if it is not given.
-
-    Raises:
-        ScenarioError: if a file is missing or malformed, or the two do not fit.
-    """
-    tasks = read_task_part(task_path)
-    return assemble(tasks, read_agent_part(agent_path if agent_path is not None else find_agent_file(task_path)))
 
 
 def find_agent_file(task_path: StrPath) -> Path:
@@ -84,7 +75,7 @@ def read_task_part(path: StrPath) -> Part:
         )
         workload = number(fields[3], where, "workload", 0, ScenarioError)
         deadline = number(fields[4], where, "deadline", 0, ScenarioError, strict=True)
-        rows.append((fields[0], TaskRow(where, x, y, deadline, workload)))
+        rows.append((fields[0], Row(where, x, y, {"deadline": deadline, "workload": workload})))
     _check_count(path, first, num_tasks, len(rows), "task")
     return Part(
         path=str(path),
@@ -117,7 +108,7 @@ def read_agent_part(path: StrPath) -> Part:
             number(text, where, what, -math.inf, ScenarioError) for text, what in zip(fields[1:3], "xy", strict=True)
         )
         capacity = number(fields[3], where, "capacity", 0, ScenarioError, strict=True)
-        rows.append((fields[0], RobotRow(where, x, y, capacity, 1.0)))
+        rows.append((fields[0], Row(where, x, y, {"capacity": capacity})))
     _check_count(path, first, num_robots, len(rows), "agent")
     return Part(path=str(path), robots=in_id_order(rows, "agent"), map=_map(first, header), name=Path(path).stem)
 
@@ -130,12 +121,13 @@ def write_taptc(scenario: Scenario, task_path: StrPath, agent_path: StrPath) -> 
             robot's, or the map lies where it would not be found again, all of which the format cannot express; or if
             a file cannot be written.
     """
-    for robot, speed in enumerate(scenario.speed):
-        if speed != 1:
-            raise ScenarioError(
-                f"{task_path}: robot {robot} has speed {speed:g}; expected 1, "
-                "as TAPTC files hold no speeds (JSON and CSV do)"
-            )
+    for each in QUANTITIES:
+        for index, value in enumerate(getattr(scenario, each.name).tolist()):
+            if each.default not in (None, value):
+                raise ScenarioError(
+                    f"{task_path}: {each.who} {index} has {each.name} {value:g}; expected {each.default:g}, "
+                    f"as TAPTC files hold no {each.name.removesuffix('s')}s (JSON and CSV do)"
+                )
     places = np.concatenate((scenario.task_xy, scenario.robot_xy))
     if map_origin_for(places, scenario.map_size) != scenario.map_origin:
         x, y = scenario.map_origin

@@ -22,8 +22,8 @@ Probability = Annotated[float, Meta(ge=0, le=1)]
 class DecisionJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One decision: the task taken, null if the robot stays for good. Time and robot are for people, and checked.
 
-    Probabilities are pairs of a task and its probability; advice is what the policy would have taken, if it was
-    somebody else who decided.
+    Probabilities are pairs of a task and its probability; advice is what the policy would have taken where
+    somebody else decided.
     """
 
     task: Index | None
@@ -51,14 +51,6 @@ class TraceJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     bookmark: Index | None = None
 
 
-_PARTS: dict[str, type[msgspec.Struct]] = {
-    "map": MapJson,
-    "tasks": TaskJson,
-    "robots": RobotJson,
-    "decisions": DecisionJson,
-}
-
-
 def read_trace(path: StrPath) -> Trace:
     """The trace of a JSON trace file. The decisions are replayed, so that each is known to be legal.
 
@@ -67,7 +59,7 @@ def read_trace(path: StrPath) -> Trace:
             robot or time than the rules do.
         ScenarioError: if the scenario in it breaks a rule of the problem.
     """
-    data = read_document(path, TraceJson, _PARTS, PlanError)
+    data = read_document(path, TraceJson, PlanError)
     scenario = assemble(json_part(path, data.map, data.tasks, data.robots, data.name or Path(path).stem), None)
     try:
         trace = Trace(
@@ -95,7 +87,7 @@ def read_trace(path: StrPath) -> Trace:
 
 
 def write_trace(trace: Trace, path: StrPath) -> None:
-    """Write a trace, exactly, one decision a line.
+    """Write a trace, exactly, one line per decision.
 
     Raises:
         PlanError: if the file cannot be written.

@@ -7,10 +7,11 @@ The model does not know how it is shown: `attach`, called when the package is im
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, get_args
 
 from mrta_zoo.digits import full, rounded, share
 from mrta_zoo.plan import Plan
+from mrta_zoo.quantities import Who
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.show.markup import in_order, map_of, table
 from mrta_zoo.show.view import shown_box, shown_time
@@ -22,11 +23,9 @@ def scenario_html(scenario: Scenario) -> str:
     """The ranges of what a scenario holds, and its map."""
     rows = [
         (what, full(values.min()), full(values.mean()), full(values.max()))
-        for what, values in (
-            ("deadline", scenario.deadline), ("workload", scenario.workload),
-            ("capacity", scenario.capacity), ("speed", scenario.speed),
-        )
-    ]  # fmt: skip
+        for who in get_args(Who)
+        for what, values in scenario.said(who).items()
+    ]
     (x, y), (width, height) = scenario.map_origin, scenario.map_size
     begins = f" from {full(x)}, {full(y)}" if x or y else ""
     title = f"{scenario.name}: {scenario.size}, map {full(width)} by {full(height)}{begins}"

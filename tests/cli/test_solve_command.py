@@ -118,7 +118,7 @@ def test_an_unknown_reason_is_told(tmp_path: Path, mission: Path, capsys: Captur
         text.replace('"routes"', '"left_out": [{"task": 1, "reason": "far"}], "routes"')
     )
     arguments = ["compare", str(mission), "--methods", f"nearest,{tmp_path / 'plan.json'}"]
-    assert "left_out[0].reason is 'far'; expected one of out of reach, others were worth more" in fails(
+    assert "left_out[0].reason is 'far'; expected one of others were worth more, out of reach" in fails(
         capsys, arguments
     )
 

@@ -175,6 +175,11 @@ def test_digests_tell_cases_and_weights_apart(tmp_path: Path) -> None:
     assert list(make_manifest("eval", {}, CASES, ["nearest", "capam"]).weights) == ["capam"]
 
 
+def test_digests_stay_those_of_experiments_begun_earlier() -> None:
+    scenario = Scenario([[1, 2], [3, 4]], [5, 6], [0, 1], [[7, 8]], [2], speed=[0.5], map_size=(9, 10), name="a")  # type: ignore[arg-type]
+    assert digest_of_cases([Case("a", scenario, 1)]).startswith("757b9174faa106e2c17f7a88a4eb3a62685cf6f8c841")
+
+
 def test_digests_tell_where_the_map_lies() -> None:
     where = replace(CASES[0], scenario=replace(CASES[0].scenario, map_origin=(-0.1, 0.0)))
     assert digest_of_cases([where]) != digest_of_cases(CASES[:1])

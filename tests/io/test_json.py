@@ -13,8 +13,11 @@ import mrta_zoo.io
 from mrta_zoo import Plan, Scenario
 from mrta_zoo.errors import PlanError, ScenarioError
 from mrta_zoo.generators import TaptcGenerator, UniformGenerator
-from mrta_zoo.io import PlanScore, ScheduledTask, read_plan, read_scenario, write_plan, write_scenario
-from mrta_zoo.io.json_format import PlanJson, ScenarioJson, schema_text
+from mrta_zoo.io import read_plan, read_scenario, write_plan, write_scenario
+from mrta_zoo.io.json_format import ScenarioJson
+from mrta_zoo.io.plan_format import PlanJson
+from mrta_zoo.io.strict_json import schema_text
+from mrta_zoo.verify import Score, Visit
 
 SCHEMAS = Path(mrta_zoo.io.__file__).parent
 SMALL = {
@@ -111,9 +114,9 @@ def test_plan_round_trip(tmp_path: Path) -> None:
 
 def test_plan_with_schedule_and_score(tmp_path: Path) -> None:
     path = tmp_path / "plan.json"
-    stop = ScheduledTask(task=3, arrival=1.5, finish=2.0, deadline=9.0, completed=True)
-    score = PlanScore(completed=3, tasks=4, completion=0.75, cost=1.25, distance=10.5, makespan=12.0)
-    write_plan(PLAN, path, schedule=[[stop, stop], [], [stop]], score=score)
+    stop = Visit(task=3, arrival=1.5, finish=2.0, deadline=9.0, completed=True)
+    score = Score(4, 3, 0.75, cost=1.25, distance=10.5, makespan=12.0, schedule=((stop, stop), (), (stop,)))
+    write_plan(PLAN, path, score)
     document = json.loads(path.read_text())
     jsonschema.validate(document, schema("plan"))
     assert read_plan(path) == PLAN
@@ -125,9 +128,9 @@ def test_plan_with_schedule_and_score(tmp_path: Path) -> None:
 
 
 def test_plan_with_an_infinite_score_is_not_written(tmp_path: Path) -> None:
-    score = PlanScore(completed=0, tasks=1, completion=0.0, cost=float("inf"), distance=0.0, makespan=0.0)
+    score = Score(1, 0, 0.0, cost=float("inf"), distance=0.0, makespan=0.0, schedule=())
     with pytest.raises(PlanError, match="score holds a number that is not finite"):
-        write_plan(PLAN, tmp_path / "plan.json", score=score)
+        write_plan(PLAN, tmp_path / "plan.json", score)
     assert not list(tmp_path.iterdir())
 
 

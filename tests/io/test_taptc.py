@@ -9,7 +9,7 @@ import pytest
 from mrta_zoo import Scenario
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io import read_cases, read_scenario, write_scenario, write_taptc
-from mrta_zoo.io.taptc import find_agent_file, read_taptc
+from mrta_zoo.io.taptc import find_agent_file
 
 TASKS = "2 3 100 50\n0 1 2 20 255\n2 5.5 6 0 30\n1 3 4 20.25 1e2"
 AGENTS = "2 100 50\n1 7 8 1.0\n0 9 10 2.0"
@@ -78,7 +78,7 @@ def test_agents_option_wins(tmp_path: Path) -> None:
     files = {"r11a2i00.txt": TASKS, "agent/a2i00.txt": "1 1 1\n0 0 0 1", "mine.dat": AGENTS}
     lay_out(tmp_path, files)
     check_content(read_scenario(tmp_path / "r11a2i00.txt", agents=tmp_path / "mine.dat"))
-    check_content(read_taptc(tmp_path / "r11a2i00.txt", tmp_path / "mine.dat"))
+    check_content(read_scenario(tmp_path / "r11a2i00.txt", tmp_path / "mine.dat"))
 
 
 def test_missing_agent_file_says_what_was_looked_for(tmp_path: Path) -> None:
@@ -102,7 +102,7 @@ def test_round_trip(tmp_path: Path, seed: int) -> None:
         name="one",
     )
     write_taptc(scenario, tmp_path / "one.txt", tmp_path / "robots.txt")
-    assert read_taptc(tmp_path / "one.txt", tmp_path / "robots.txt") == scenario
+    assert read_scenario(tmp_path / "one.txt", tmp_path / "robots.txt") == scenario
     write_scenario(scenario, tmp_path / "one.txt")
     assert read_scenario(tmp_path / "one.txt") == scenario
     assert sorted(path.name for path in tmp_path.iterdir()) == ["agent", "one.txt", "robots.txt"]

@@ -16,7 +16,7 @@ import mrta_zoo.io
 from mrta_zoo.bounds import MAX_SEED
 from mrta_zoo.errors import MrtaError
 from mrta_zoo.io import read_cases, read_trace, write_scenario, write_trace
-from mrta_zoo.io.json_format import schema_text
+from mrta_zoo.io.strict_json import schema_text
 from mrta_zoo.io.trace_format import TraceJson
 from mrta_zoo.mission import Mission
 from mrta_zoo.rules import MaskRule
@@ -72,9 +72,9 @@ BAD_TRACES = [
     ("", "is empty; expected"),
     (PLAN, "format is 'mrta_zoo.plan'; expected 'mrta_zoo.trace'"),
     (TRACE.replace('"version": 1', '"version": 2'), "version is 2; expected 1"),
-    (TRACE.replace('"feasible"', '"any"'), "mask_rule is 'any'; expected one of feasible, active, unvisited"),
+    (TRACE.replace('"feasible"', '"any"'), "mask_rule is 'any'; expected one of active, feasible, unvisited"),
     (TRACE.replace('"deadline": 20', '"deadline": 0'), "tasks[0].deadline is 0; expected a number > 0"),
-    (TRACE.replace('"y": 4', '"y": 51'), "tasks[0]: y is 51.0; expected a number from 0 to 50.0"),
+    (TRACE.replace('"y": 4', '"y": 51'), "tasks[0]: y is 51.0; expected a number from 0 to 50, inside"),
     (TRACE.replace('[{"x": 0, "y": 0, "capacity": 2}]', "[]"), "robots is a list of 0; expected a list of length >= 1"),
     (TRACE.replace('"task": null, ', ""), "decisions[1] has no field 'task'; expected task, time, robot"),
     (TRACE.replace('"task": 0', '"task": -1'), "decisions[0].task is -1; expected a whole number >= 0"),

@@ -1,0 +1,92 @@
+"""The map of a mission: how large it is, and where it begins if nobody says."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from mrta_zoo.errors import ScenarioError
+from mrta_zoo.quantities import BOUNDS, LARGEST, SMALLEST, FloatArray
+
+Pair = tuple[float, float]
+
+UNSAID: Pair = (math.nan, math.nan)
+"""A map's size or origin that follows from the places on it."""
+DEFAULT_SIZE: Pair = (100.0, 100.0)
+
+
+def map_around(places: FloatArray, size: Any, origin: Any) -> tuple[Pair, Pair]:
+    """Size and origin of the map, as they are said or, if they are `UNSAID`, as they follow from the places.
+
+    Args:
+        places: (P, 2) at least one place.
+        size: the map's width and height.
+        origin: the map's lowest x and y.
+
+    Raises:
+        ScenarioError: if something else than two numbers in range is said.
+    """
+    if _is_unsaid(size):
+        size = DEFAULT_SIZE
+        if _is_unsaid(origin) and np.isfinite(places).all():
+            least = np.array(map_origin_for(places, DEFAULT_SIZE))
+            if not ((places >= least) & (places <= least + DEFAULT_SIZE)).all():
+                size, origin = square_around(places)
+    size = _pair(size, "map_size", SMALLEST, f"two finite numbers > 0{BOUNDS}")
+    if _is_unsaid(origin):
+        origin = map_origin_for(places, size)
+    return size, _pair(origin, "map_origin", -LARGEST, f"two numbers from {-LARGEST:g} to {LARGEST:g}")
+
+
+def map_origin_for(places: FloatArray, map_size: Pair) -> Pair:
+    """Where a map lies that says only how large it is.
+
+    At 0 and 0 or, if some coordinate is negative or no place lies on the map then, as in surveys, at the least whole
+    x and y of all places, provided that it holds every place there.
+
+    Args:
+        places: (P, 2) at least one place.
+        map_size: the map's width and height.
+    """
+    on_map = (places <= map_size).all(axis=1)
+    if (places < 0).any() or not on_map.any():
+        corner = np.floor(places.min(axis=0))
+        if (places <= corner + map_size).all():
+            return float(corner[0]), float(corner[1])
+    return 0.0, 0.0
+
+
+def square_around(places: FloatArray) -> tuple[Pair, Pair]:
+    """Size and origin of the map of a mission that names none.
+
+    The smallest square with a whole side >= 1 that holds every place from 0 and 0 on; or from their least whole x and y
+    on, if one is negative, or that square would be more than twice as large.
+
+    Args:
+        places: (P, 2) at least one place.
+    """
+
+    def side(origin: FloatArray) -> float:
+        return max(1.0, float(np.ceil((places - origin).max())))  # which stays a float, however large
+
+    origin = np.zeros(2)
+    corner = np.floor(places.min(axis=0))
+    if corner.min() < 0 or side(origin) > 2 * side(corner):
+        origin = corner
+    return (side(origin),) * 2, (float(origin[0]), float(origin[1]))
+
+
+def _is_unsaid(pair: Any) -> bool:
+    return isinstance(pair, tuple) and len(pair) == 2 and all(isinstance(each, float) and each != each for each in pair)
+
+
+def _pair(value: Any, attribute: str, least: float, expected: str) -> Pair:
+    try:
+        x, y = (float(each) + 0.0 for each in value)
+    except (TypeError, ValueError):
+        x = y = math.nan
+    if not (least <= x <= LARGEST and least <= y <= LARGEST):
+        raise ScenarioError(f"{attribute} is {value!r}; expected {expected}")
+    return x, y
