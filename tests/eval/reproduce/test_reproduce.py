@@ -13,11 +13,11 @@ import pandas as pd
 import pytest
 
 from mrta_zoo.cli.main import main
-from mrta_zoo.cli.reproduce import reference_of, usual_methods
 from mrta_zoo.eval.report.figure_style import new_figure, style_of
 from mrta_zoo.eval.report.files import write_report
 from mrta_zoo.eval.report.parts import Picture, Report, Section, Table
 from mrta_zoo.eval.reproduce import paper
+from mrta_zoo.eval.reproduce.methods import reference_of, usual_methods
 from mrta_zoo.policies.registry import method_names
 
 METHODS = "random,nearest,capam"
