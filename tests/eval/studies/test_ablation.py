@@ -168,16 +168,6 @@ def fails(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     return error
 
 
-def test_another_study_in_the_same_folder_is_refused(straight: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    rows = (straight / "rows.csv").read_bytes()
-    assert "updates was 2, now it is 3" in fails(capsys, "--out", str(straight), *changed(TINY, "--updates", "3"))
-    assert "seeds was 2, now it is 1" in fails(capsys, "--out", str(straight), *changed(TINY, "--seeds", "1"))
-    assert "only was encoder,moments, now it is moments" in fails(
-        capsys, "--out", str(straight), *changed(TINY, "--only", "moments")
-    )
-    assert (straight / "rows.csv").read_bytes() == rows
-
-
 @pytest.mark.parametrize(
     ("flags", "sentence"),
     [
