@@ -14,8 +14,8 @@ LIBRARIES = ("numpy", "torch", "scipy", "numba", "pyvrp", "pandas", "statsmodels
 
 
 @dataclass(frozen=True, slots=True)
-class Session:
-    """One uninterrupted stretch of measuring.
+class Machine:
+    """The machine, as it was during one uninterrupted stretch of measuring.
 
     Attributes:
         started: when it began, UTC.
@@ -40,16 +40,28 @@ class Session:
         """Whether others were at work too, so that times are longer than they would be."""
         return self.load is not None and self.load > BUSY * self.cores
 
+    def described(self, threads: str) -> str:
+        """In a line.
 
-def this_session(threads: int) -> Session:
-    """A session that begins now, here."""
+        Args:
+            threads: how many torch threads there were, in words.
+        """
+        load = "unknown" if self.load is None else f"{self.load:g}"
+        return (
+            f"{self.processor}, {self.cores} cores usable, load {load} at the beginning, {threads}, {self.system}; "
+            f"{self.libraries}"
+        )
+
+
+def this_machine(threads: int) -> Machine:
+    """This machine, now."""
     found = [f"Python {platform.python_version()}"]
     for library in LIBRARIES:
         try:
             found.append(f"{library} {version(library)}")
         except PackageNotFoundError:
             continue
-    return Session(
+    return Machine(
         started=time.strftime("%Y-%m-%d %H:%M UTC", time.gmtime()),
         processor=_processor(),
         cores=len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,

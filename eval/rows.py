@@ -7,6 +7,9 @@ from dataclasses import dataclass, fields
 from mrta_zoo.digits import full
 from mrta_zoo.show.markup import table
 
+KEY = ("case", "method")
+"""The columns that tell rows apart."""
+
 
 @dataclass(frozen=True, slots=True)
 class Row:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+from collections.abc import Sequence
 from dataclasses import astuple, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 import msgspec
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.io.records import write_records
 from mrta_zoo.io.source import read_text, write_text
 from mrta_zoo.io.table import columns_in_use
 from mrta_zoo.wording import composed, counted
@@ -43,8 +45,8 @@ class RowsFile(Generic[RowType]):
         if os.path.exists(path):
             self._read()
 
-    def append(self, row: RowType) -> None:
-        """Add a row, in memory and on disk.
+    def append(self, *rows: RowType) -> None:
+        """Add rows, in memory and on disk.
 
         Raises:
             ConfigError: if the file cannot be written.
@@ -53,7 +55,7 @@ class RowsFile(Generic[RowType]):
         writer = csv.writer(stream, lineterminator="\n")
         if not self._whole_header:
             writer.writerow(self._columns)
-        writer.writerow(astuple(row))
+        writer.writerows(map(astuple, rows))
         try:
             with self.path.open("a", encoding="utf-8", newline="") as file:
                 file.write(stream.getvalue())
@@ -61,7 +63,17 @@ class RowsFile(Generic[RowType]):
             reason = getattr(error, "strerror", None) or str(error)
             raise ConfigError(f"{self.path} cannot be written: {reason.lower()}") from None
         self._whole_header = True
-        self.rows.append(row)
+        self.rows += rows
+
+    def keep(self, rows: Sequence[RowType]) -> None:
+        """Hold these rows alone, in this order; the file is written anew only if it does not hold just them.
+
+        Raises:
+            ConfigError: if the file cannot be written.
+        """
+        if list(rows) != self.rows:
+            write_records(rows, self.path, self._of)
+            self.rows, self._whole_header = list(rows), True
 
     def _read(self) -> None:
         text = composed(read_text(self.path, ConfigError)) if self.path.stat().st_size else ""

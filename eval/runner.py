@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from mrta_zoo.errors import MrtaError
+from mrta_zoo.errors import MissingExtraError, MrtaError
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.io import Case
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.protocol import NeedsWarmUp, Solver
+from mrta_zoo.policies.registry import POLISH, make_solver, method_names
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import Score, verify
 
@@ -47,24 +48,54 @@ def evaluate(cases: Sequence[Case], solvers: Mapping[str, Solver]) -> Iterator[R
     Raises:
         MrtaError: if a method fails on a case; the message names both.
     """
-    for method, solver in solvers.items():
-        for case, solved in solve_cases(cases, method, solver):
-            yield row_of(case, method, solved)
+    for name, solver in solvers.items():
+        method = NamedSolver(name, solver)
+        for case in cases:
+            yield row_of(case, name, method.solve(case))
 
 
-def solve_cases(cases: Sequence[Case], method: str, solver: Solver) -> Iterator[tuple[Case, Solved]]:
-    """One method on every case, warmed up before the first; each result as soon as it is known.
+class NamedSolver:
+    """A solver under the name that its rows get; it is warmed up before its first case.
 
-    Raises:
-        MrtaError: if the method fails on a case; the message names both.
+    Args:
+        name: the method, as it was asked for.
+        solver: the method itself.
     """
-    if isinstance(solver, NeedsWarmUp) and cases:
-        solver.warm_up(cases[0].scenario)
-    for case in cases:
+
+    def __init__(self, name: str, solver: Solver) -> None:
+        self.name, self._solver, self._warm = name, solver, False
+
+    def solve(self, case: Case) -> Solved:
+        """Plan a case, timed, and let the verifier score the plan.
+
+        Raises:
+            MrtaError: if the solver fails, or its plan does not fit the scenario; the message names method and case.
+        """
+        if not self._warm and isinstance(self._solver, NeedsWarmUp):
+            self._solver.warm_up(case.scenario)
+        self._warm = True
         try:
-            yield case, solve_and_score(solver, case.scenario)
+            return solve_and_score(self._solver, case.scenario)
         except MrtaError as error:
-            raise type(error)(f"method {method} on case {case.name}: {error}") from error
+            raise type(error)(f"method {self.name} on case {case.name}: {error}") from error
+
+
+def those_there(names: Iterable[str], absent: dict[str, str] | None = None) -> list[str]:
+    """Those of some methods that this version has and this installation can run.
+
+    Args:
+        names: of the methods.
+        absent: takes those that lack an optional dependency, with the reason.
+    """
+    there, found = method_names(), []
+    for name in names:
+        if name.removesuffix(POLISH) in there:
+            try:
+                make_solver(name)
+                found.append(name)
+            except MissingExtraError as error:
+                (absent if absent is not None else {})[name] = str(error)
+    return found
 
 
 def row_of(case: Case, method: str, solved: Solved) -> Row:

@@ -52,6 +52,10 @@ class Estimate:
     n: int
     note: str = ""
 
+    def columns(self, mean: str) -> dict[str, float | None]:
+        """Mean, low and high, as columns of a table; the mean under this name."""
+        return {mean: self.mean, "low": self.low, "high": self.high}
+
 
 @dataclass(frozen=True, slots=True)
 class PairedTest:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
@@ -75,3 +76,7 @@ def _taptc_suite(seed: int, tasks: int, robot_counts: tuple[int, ...]) -> list[S
                     name = f"r{group_number}{quarters}a{robots}i0{instance}"
                     scenarios.append(generator(rng, name))
     return scenarios
+
+
+SUITES: dict[str, Callable[[], list[Scenario]]] = {"suite-100": builtin_suite, "suite-200": double_suite}
+"""The suites by the names that the command line has for them."""

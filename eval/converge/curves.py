@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from mrta_zoo.eval.report.figure_style import FAINT, INK, new_figure, plain, style_of
-from mrta_zoo.eval.rows import Row
+from mrta_zoo.digits import full, percentage, rounded
+from mrta_zoo.errors import ConfigError
+from mrta_zoo.eval.report import wording
+from mrta_zoo.eval.report.figure_style import FAINT, INK, new_figure, plain, save_figure, style_of
+from mrta_zoo.eval.rows import KEY, Row
 from mrta_zoo.eval.significance import estimate_mean
 from mrta_zoo.extras import importing
+from mrta_zoo.io.outputs import Outputs
+from mrta_zoo.io.source import write_text
+from mrta_zoo.show.terminal.console import results_console, say
+from mrta_zoo.show.terminal.sheet import Sheet
 from mrta_zoo.wording import counted
 
 with importing("report", "a figure"):
@@ -20,6 +29,8 @@ with importing("report", "a figure"):
 
 NEAR = 2.0
 """Lines that end within this factor of each other have their names in one column."""
+BUDGET_KEY = (*KEY, "budget")
+"""The columns that tell rows apart."""
 HALO = [withStroke(linewidth=3, foreground="white")]
 
 
@@ -57,16 +68,11 @@ def curves_of(rows: Sequence[BudgetRow], order: Sequence[tuple[str, float | None
             lines.append(
                 {
                     "tasks": tasks, "method": method, "budget": budget, "cases": estimate.n,
-                    "mean_seconds": float(np.mean([row.seconds for row in found])), "mean_percent": estimate.mean,
-                    "low": estimate.low, "high": estimate.high, "note": estimate.note,
+                    "mean_seconds": float(np.mean([row.seconds for row in found])),
+                    **estimate.columns("mean_percent"), "note": estimate.note,
                 }
             )  # fmt: skip
     return pd.DataFrame(lines)
-
-
-def frame_of_rows(rows: Sequence[BudgetRow]) -> pd.DataFrame:
-    """Rows as they are."""
-    return pd.DataFrame([asdict(row) for row in rows])
 
 
 def draw_curves(curves: pd.DataFrame) -> Figure:
@@ -124,3 +130,47 @@ def _name_ends(axes: object, ends: Sequence[tuple[float, float, str, str]]) -> N
             arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 3}
             if at != y else None,
         )  # fmt: skip
+
+
+def publish_curves(curves: pd.DataFrame, folder: Path) -> None:
+    """Write ``curves.csv`` and the figure, and print the table and where they are.
+
+    Raises:
+        ConfigError: if a file cannot be written.
+    """
+    text = curves.to_csv(index=False, lineterminator="\n")
+    with Outputs() as outputs:
+        outputs.write("data", folder / "curves.csv", lambda path: write_text(text, path, ConfigError))
+        outputs.write(
+            "figure", folder / "curves.png", lambda path: save_figure(draw_curves(curves), path.with_suffix(""))
+        )
+        tell_curves(curves)
+        for line in outputs.written:
+            say(results_console(), line)
+
+
+def tell_curves(curves: pd.DataFrame) -> None:
+    """Print the curves as a table."""
+    console = results_console()
+    console.print(_sheet(curves), crop=False)
+    say(
+        console,
+        "The cases are the same for all methods: a difference between two methods can be sure even where their "
+        "intervals overlap (mrta-zoo reproduce tests it).",
+    )
+
+
+def _sheet(curves: pd.DataFrame) -> Sheet:
+    lines = [
+        (
+            str(line["tasks"]), line["method"], wording.DASH if pd.isna(line["budget"]) else full(line["budget"]),
+            rounded(line["mean_seconds"], 3), f"{percentage(line['mean_percent'])} [{_ends(line)}]", str(line["cases"]),
+        )
+        for line in curves.to_dict("records")
+    ]  # fmt: skip
+    title = f"Tasks completed, mean % with its {wording.INTERVAL} over cases; budget and time taken in seconds"
+    return Sheet(title, ("tasks", "method", "budget", "took", "completed", "cases"), lines, left=("method",))
+
+
+def _ends(line: dict[str, Any]) -> str:
+    return line["note"] if pd.isna(line["low"]) else f"{percentage(line['low'])}, {percentage(line['high'])}"

@@ -44,6 +44,11 @@ def p_value(p: float | None) -> str:
     return "< 0.0001" if p < 1e-4 else f"{p:.2g}" if p < 0.995 else "1"
 
 
+def equals(p: str) -> str:
+    """A p-value as text, behind its sign."""
+    return p if p.startswith("<") else f"= {p}"
+
+
 def seconds(value: float) -> str:
     """A time in the unit that suits it."""
     if value < 0.001:

@@ -8,14 +8,14 @@ from mrta_zoo.eval.report import wording
 from mrta_zoo.eval.report.parts import Section, Table
 from mrta_zoo.eval.reproduce import paper
 from mrta_zoo.eval.reproduce.completion import case_counts
-from mrta_zoo.eval.reproduce.study import Study
+from mrta_zoo.eval.reproduce.results import Results
 from mrta_zoo.wording import counted
 
 
-def moments_section(study: Study) -> Section:
+def moments_section(results: Results) -> Section:
     """Our policies beside the paper's, by number of tasks and robots."""
     title = "CapAM with P = 1, 2, 3, and AM, at one and two times the size"
-    present = [method for method in paper.NAMES if method in study.methods]
+    present = [method for method in paper.NAMES if method in results.methods]
     lacking = [f"{method} ({name})" for method, name in paper.NAMES.items() if method not in present]
     text = []
     if lacking:
@@ -35,12 +35,12 @@ def moments_section(study: Study) -> Section:
     )
     shown: list[dict[str, str]] = []
     data, bold = [], set()
-    for tasks in study.sizes:
-        for group in study.groups(tasks):
+    for tasks in results.sizes:
+        for group in results.groups(tasks):
             if group.robots is None:
                 continue
             cells: dict[str, str] = {"tasks": str(tasks), "robots": str(group.robots)}
-            found = {method: study.estimate(group, method, "percent") for method in present}
+            found = {method: results.estimate(group, method, "percent") for method in present}
             best = max(estimate.mean for estimate in found.values())
             for method, estimate in found.items():
                 if len(present) > 1 and estimate.mean == best:
@@ -58,7 +58,7 @@ def moments_section(study: Study) -> Section:
                         }
                     )  # fmt: skip
             shown.append(cells)
-    counts = " ".join(f"{counted(tasks, 'task')}: {case_counts(study, tasks)}" for tasks in study.sizes)
+    counts = " ".join(f"{counted(tasks, 'task')}: {case_counts(results, tasks)}" for tasks in results.sizes)
     caption = (
         f"Tasks completed in time, mean % with its {wording.INTERVAL} in brackets (BCa bootstrap over cases), of our "
         f"policies; and the paper’s Table IV ({paper.SOURCE}), 24 other cases a line, without intervals. {counts}"

@@ -8,7 +8,7 @@ from mrta_zoo.digits import share
 from mrta_zoo.eval.report import wording
 from mrta_zoo.eval.report.parts import Picture, Section, Table
 from mrta_zoo.eval.reproduce.figures import draw_gaps
-from mrta_zoo.eval.reproduce.study import Study
+from mrta_zoo.eval.reproduce.results import Results
 from mrta_zoo.eval.significance import estimate_mean
 from mrta_zoo.wording import counted
 
@@ -16,12 +16,12 @@ EXACT = "exact"
 TITLE = "Optimality gap on small scenarios"
 
 
-def optimality_section(study: Study) -> Section:
+def optimality_section(results: Results) -> Section:
     """Mean gap, share solved to optimality, and whether anyone ever beat the exact solver."""
-    if study.small is None:
-        reason = study.absent.get(EXACT, f"the method {EXACT} was not run")
+    if results.small is None:
+        reason = results.absent.get(EXACT, f"the method {EXACT} was not run")
         return Section(title=TITLE, text=(f"Not measured, because {reason}.",))
-    frame = study.small
+    frame = results.small
     exact = frame[frame["method"] == EXACT].set_index("case")
     proved = exact.index[exact["completed"] >= exact["bound"]]
     optimum = frame["case"].map(exact["completed"])
@@ -40,7 +40,7 @@ def optimality_section(study: Study) -> Section:
     gaps, shown, data = {}, [], []
     for method in dict.fromkeys(judged["method"]):
         rows = judged[judged["method"] == method]
-        gap = estimate_mean(rows["gap"].to_numpy(float), study.seed)
+        gap = estimate_mean(rows["gap"].to_numpy(float), results.seed)
         optimal = int((rows["completed"] == rows["optimum"]).sum())
         shown.append(
             {
@@ -72,7 +72,7 @@ def optimality_section(study: Study) -> Section:
         name="optimality_gap_figure",
         caption=f"Mean optimality gap; bar: {wording.INTERVAL} (BCa bootstrap). "
         f"n = {counted(len(proved), 'scenario')}.",
-        figure=draw_gaps(study, gaps),
+        figure=draw_gaps(results, gaps),
         data=table.data,
     )
     return Section(title=TITLE, text=tuple(text), pictures=(picture,), tables=(table,))

@@ -8,18 +8,18 @@ from mrta_zoo.eval.report import wording
 from mrta_zoo.eval.report.parts import Picture, Section
 from mrta_zoo.eval.reproduce.completion import case_counts, estimate_table
 from mrta_zoo.eval.reproduce.figures import draw_intervals
-from mrta_zoo.eval.reproduce.study import Study
+from mrta_zoo.eval.reproduce.results import Results
 from mrta_zoo.wording import counted
 
 
-def share_section(study: Study) -> Section:
+def share_section(results: Results) -> Section:
     """Tasks completed as % of what the best known plan completes."""
     title = "Share of the best known plan"
-    frame = study.frame
+    frame = results.frame
     best_here = frame.groupby("case")["completed"].transform("max")
-    reference = frame["case"].map(dict(study.best_known))
+    reference = frame["case"].map(dict(results.best_known))
     best = reference.fillna(best_here).astype(float)
-    known = study.frame["case"].isin(frame.loc[best > 0, "case"])
+    known = results.frame["case"].isin(frame.loc[best > 0, "case"])
     with_reference = frame.loc[reference.notna(), "case"].nunique()
     cases = frame["case"].nunique()
     beaten = frame.loc[best_here > best, "case"].nunique()
@@ -34,7 +34,7 @@ def share_section(study: Study) -> Section:
             f"{counted(cases - frame.loc[known, 'case'].nunique(), 'case')} in which nobody completed any task "
             "are left out."
         )
-    shares = replace(study, frame=frame.assign(share=100 * frame["completed"] / best)[known])
+    shares = replace(results, frame=frame.assign(share=100 * frame["completed"] / best)[known])
     if shares.frame.empty:
         return Section(title=title, text=tuple(text))
     pictures, tables = [], []

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from mrta_zoo.eval.machine import Session
+from mrta_zoo.eval.machine import Machine
 from mrta_zoo.eval.report import wording
 from mrta_zoo.eval.reproduce.all_pairs import Pairs, not_told_apart
-from mrta_zoo.eval.reproduce.comparison import Comparison
 from mrta_zoo.eval.reproduce.optimality import EXACT
-from mrta_zoo.eval.reproduce.study import Group, Study
+from mrta_zoo.eval.reproduce.paired_tests import PairedTests
+from mrta_zoo.eval.reproduce.results import Group, Results
 from mrta_zoo.eval.reproduce.timing import busy_note
 from mrta_zoo.eval.significance import SIGNIFICANT
 from mrta_zoo.wording import counted
@@ -19,51 +19,51 @@ MOST_NAMED = 6
 
 
 def summary(
-    study: Study, comparisons: Sequence[Comparison], pairs: Mapping[int, Pairs], sessions: Sequence[Session]
+    results: Results, comparisons: Sequence[PairedTests], pairs: Mapping[int, Pairs], machines: Sequence[Machine]
 ) -> tuple[str, ...]:
     """A few sentences for each number of tasks, by number of robots, and for planning time.
 
     Args:
-        study: what was measured.
+        results: what was measured.
         comparisons: of the reference with the other methods.
         pairs: any two methods, by number of tasks.
-        sessions: in which it was measured.
+        machines: on which it was measured.
     """
     points = []
-    for tasks in study.sizes:
-        whole, *by_robots = study.groups(tasks)
-        points.append(_ranking(study, whole))
+    for tasks in results.sizes:
+        whole, *by_robots = results.groups(tasks)
+        points.append(_ranking(results, whole))
         chosen = [each for each in comparisons if each.group == whole]
         if chosen:
-            points.append(_against(study, tasks, chosen))
+            points.append(_against(results, tasks, chosen))
         points += _not_told_apart(tasks, pairs[tasks])
-        points += _by_robots(study, tasks, [each for each in comparisons if each.group in by_robots], chosen)
+        points += _by_robots(results, tasks, [each for each in comparisons if each.group in by_robots], chosen)
     if comparisons:
         points.append(
             f"Significant means p < {SIGNIFICANT} in a paired t-test over the cases, after Holm’s adjustment for the "
             "number of comparisons. Each trained method is one set of weights: the tests speak of these weights, "
             "not of every training."
         )
-    points.append(_times(study) + (" " + busy_note(sessions)[0] if busy_note(sessions) else ""))
-    if study.small is not None and (study.small["method"] == EXACT).any():
+    points.append(_times(results) + (" " + busy_note(machines)[0] if busy_note(machines) else ""))
+    if results.small is not None and (results.small["method"] == EXACT).any():
         points.append("For small scenarios the distance to the proven optimum is in the section on the optimality gap.")
     return tuple(points)
 
 
-def _ranking(study: Study, group: Group) -> str:
+def _ranking(results: Results, group: Group) -> str:
     assert group.tasks is not None
-    means = {method: study.select(group, method)["percent"].mean() for method in study.methods}
+    means = {method: results.select(group, method)["percent"].mean() for method in results.methods}
     order = sorted(means, key=lambda method: -means[method])
     first = (
-        f"{counted(group.tasks, 'task')} ({counted(study.cases(group), 'case')}): tasks completed in time, mean: "
+        f"{counted(group.tasks, 'task')} ({counted(results.cases(group), 'case')}): tasks completed in time, mean: "
         if len(order) > 1
-        else f"{counted(group.tasks, 'task')} ({counted(study.cases(group), 'case')}): "
+        else f"{counted(group.tasks, 'task')} ({counted(results.cases(group), 'case')}): "
     )
     return first + ", ".join(f"{method} {wording.number(means[method])} %" for method in order) + "."
 
 
-def _against(study: Study, tasks: int, chosen: Sequence[Comparison]) -> str:
-    def named(each: Comparison) -> str:
+def _against(results: Results, tasks: int, chosen: Sequence[PairedTests]) -> str:
+    def named(each: PairedTests) -> str:
         points = wording.number(abs(each.test.difference.mean))
         low, high = each.test.difference.low, each.test.difference.high
         if low is None or high is None:
@@ -87,7 +87,7 @@ def _against(study: Study, tasks: int, chosen: Sequence[Comparison]) -> str:
         parts.append(f"it completes significantly fewer than {wording.listed(worse)}")
     if equal:
         parts.append(f"there is no significant difference from {wording.listed(equal)}")
-    text = f"{study.against} with {counted(tasks, 'task')}: {'; '.join(parts)}."
+    text = f"{results.against} with {counted(tasks, 'task')}: {'; '.join(parts)}."
     disagree = [
         each.method
         for each in chosen
@@ -98,7 +98,7 @@ def _against(study: Study, tasks: int, chosen: Sequence[Comparison]) -> str:
     return text
 
 
-def _by_robots(study: Study, tasks: int, chosen: Sequence[Comparison], whole: Sequence[Comparison]) -> list[str]:
+def _by_robots(results: Results, tasks: int, chosen: Sequence[PairedTests], whole: Sequence[PairedTests]) -> list[str]:
     """Where a number of robots tells another story than all cases together."""
     sign_of = {each.method: _sign(each) for each in whole}
     stories: dict[str, list[str]] = {}
@@ -117,7 +117,7 @@ def _by_robots(study: Study, tasks: int, chosen: Sequence[Comparison], whole: Se
     parts = [f"against {method}, {wording.listed(found)}" for method, found in stories.items()]
     found_so = "; ".join(parts)
     return [
-        f"{study.against} with {counted(tasks, 'task')}, where the number of robots changes the picture: {found_so}."
+        f"{results.against} with {counted(tasks, 'task')}, where the number of robots changes the picture: {found_so}."
     ]
 
 
@@ -140,15 +140,15 @@ def _not_told_apart(tasks: int, pairs: Pairs) -> list[str]:
     ]
 
 
-def _sign(each: Comparison) -> int:
+def _sign(each: PairedTests) -> int:
     if not each.significant:
         return 0
     return 1 if each.test.difference.mean > 0 else -1
 
 
-def _times(study: Study) -> str:
-    size = study.sizes[0]
-    means = {method: study.select(Group(size), method)["seconds"].mean() for method in study.methods}
+def _times(results: Results) -> str:
+    size = results.sizes[0]
+    means = {method: results.select(Group(size), method)["seconds"].mean() for method in results.methods}
     order = sorted(means, key=lambda method: means[method])
     return (
         f"Time to plan a mission with {counted(size, 'task')}, mean: "

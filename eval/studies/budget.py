@@ -9,16 +9,16 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.train.config import TrainConfig
 
 
-@dataclass(frozen=True, kw_only=True)
-class Budget:
-    """What a study gives to each of its runs; studies say how much.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrainingBudget:
+    """What a study gives to each of its runs.
 
     Attributes:
         updates: gradient steps.
-        scenarios: scenarios an update.
-        samples: missions sampled of each.
+        scenarios: scenarios in each update.
+        samples: missions sampled of each scenario.
         tasks: tasks of a scenario, in training and in the comparison.
-        validations: how often a run is validated, besides at the beginning.
+        validations: how often a run is validated, not counting the one at the beginning.
         validation_scenarios: on how many scenarios.
 
     Raises:
@@ -39,11 +39,11 @@ class Budget:
         if self.samples < 2:
             raise ConfigError(f"samples is {self.samples}; expected at least 2, as samples are compared")
 
-    def run(self, **settings: Any) -> TrainConfig:
+    def config(self, **settings: Any) -> TrainConfig:
         """A run on TAPTC-like scenarios by REINFORCE alone.
 
         Args:
-            **settings: of `TrainConfig`, with which it is otherwise.
+            **settings: fields of `TrainConfig` that differ.
         """
         updates = settings.get("updates", self.updates)
         usual: dict[str, Any] = {

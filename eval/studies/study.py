@@ -1,119 +1,169 @@
-"""A study: a folder with a run for each way to train and each seed, and what its report says of how it was made."""
+"""A study: what was declared, what was measured, and the differences."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from statistics import fmean
 
-from mrta_zoo import __version__
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.experiment import Manifest, open_experiment
-from mrta_zoo.eval.machine import Session, this_session
+from mrta_zoo.eval.experiment import Experiment
+from mrta_zoo.eval.machine import Machine
+from mrta_zoo.eval.manifest import Manifest, make_manifest
 from mrta_zoo.eval.plot_history import LearningCurve, read_history
-from mrta_zoo.eval.rows_file import RowsFile
-from mrta_zoo.eval.studies.job import Job, mendable, rows_of
-from mrta_zoo.eval.studies.pool import train_all
-from mrta_zoo.eval.studies.rows import RunRow
-from mrta_zoo.io.records import write_records
-from mrta_zoo.policies.cpu_threads import cpu_threads
+from mrta_zoo.eval.significance import SIGNIFICANT, Estimate, holm
+from mrta_zoo.eval.studies.design import Design, Question
+from mrta_zoo.eval.studies.effects import Effect, Runs, arrange, effect_of, equal_weights
+from mrta_zoo.eval.studies.held_out import Distribution
+from mrta_zoo.eval.studies.rows import RUN_KEY, RunRow
+from mrta_zoo.eval.studies.run import mendable, trained_policy
+from mrta_zoo.policies.neural.policy import NeuralPolicy
+from mrta_zoo.train import checkpoint
 
-MAX_SEEDS, MAX_WORKERS = 1000, 1024
+MAX_WORKERS = 1024
 
 
-def check_counts(seeds: int, workers: int) -> None:
-    """Make sure that there can be so many runs of each kind, and so many at a time.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contrast:
+    """One arm against the reference of its question.
 
-    Raises:
-        ConfigError: if not.
+    Attributes:
+        question: that it belongs to.
+        distribution: of the held-out scenarios.
+        arm: its name.
+        effect: arm minus reference, mean over the numbers of robots that count.
+        adjusted: p-value, adjusted for the contrasts of the question; None if there is none.
     """
-    if not 1 <= seeds <= MAX_SEEDS:
-        raise ConfigError(f"seeds is {seeds}; expected a whole number from 1 to {MAX_SEEDS}")
-    if not 1 <= workers <= MAX_WORKERS:
-        raise ConfigError(f"workers is {workers}; expected a whole number from 1 to {MAX_WORKERS}")
 
-
-class Named(Protocol):
-    """What has a name."""
+    question: Question
+    distribution: Distribution
+    arm: str
+    effect: Effect
+    adjusted: float | None
 
     @property
-    def name(self) -> str:
-        """Its name."""
+    def sure(self) -> bool:
+        """Whether there is a difference after adjustment."""
+        return self.adjusted is not None and self.adjusted < SIGNIFICANT
 
 
-Question = TypeVar("Question", bound=Named)
+@dataclass(frozen=True, kw_only=True)
+class Study:
+    """A finished study.
 
-
-def choose(names: Sequence[str], questions: Mapping[str, Question]) -> list[Question]:
-    """Those of a study's questions that are named, in the study's order.
-
-    Raises:
-        ConfigError: if there is none of some name.
+    Attributes:
+        design: what was declared.
+        manifest: what the rows depend on.
+        machines: on which runs were trained.
+        rows: of all runs, in order.
+        curves: of each (arm, seed), in the order of the runs.
+        folders: of each (arm, seed).
     """
-    for name in names:
-        if name not in questions:
-            raise ConfigError(f"there is no question {name!r}; expected some of {', '.join(questions)}")
-    return [question for question in questions.values() if question.name in names]
+
+    design: Design
+    manifest: Manifest
+    machines: Sequence[Machine]
+    rows: Sequence[RunRow]
+    curves: Mapping[tuple[str, int], LearningCurve]
+    folders: Mapping[tuple[str, int], Path]
+
+    @cached_property
+    def runs(self) -> Mapping[tuple[str, str], Runs]:
+        """The runs of each (arm, distribution): % completed of each scenario."""
+        return arrange(self.rows)
+
+    @cached_property
+    def policies(self) -> dict[tuple[str, int], NeuralPolicy]:
+        """What each (arm, seed) has learned."""
+        return {key: trained_policy(folder) for key, folder in self.folders.items()}
+
+    def effect(
+        self,
+        coefficients: Mapping[str, float],
+        weights: Mapping[int, float] | None = None,
+        distribution: Distribution = "taptc",
+        among: Sequence[str] = (),
+    ) -> Effect:
+        """A weighted sum of arms, such as one minus another.
+
+        Args:
+            coefficients: of the arms.
+            weights: of the numbers of robots; by default the mean over those that are compared.
+            distribution: of the held-out scenarios.
+            among: arms whose runs, too, say how much runs scatter, if they scatter alike.
+        """
+        kinds = {name: self.design.every_arm[name].kind for name in (*among, *coefficients)}
+        asked = {kinds[name] for name in coefficients}
+        pool = {name: self.runs[name, distribution] for name, kind in kinds.items() if kind in asked}
+        return effect_of(pool, coefficients, weights or equal_weights(self.design.compared), kinds)
+
+    def mean(self, arm: str, robots: Sequence[int]) -> Estimate:
+        """% completed by an arm, mean over numbers of robots, with an interval that knows of runs and scenarios.
+
+        Student's intervals may reach beyond what a share can be; there they end.
+        """
+        found = self.effect({arm: 1.0}, equal_weights(robots)).difference
+        if found.low is None or found.high is None:
+            return found
+        return replace(found, low=max(found.low, 0.0), high=min(found.high, 100.0))
+
+    @cached_property
+    def contrasts(self) -> list[Contrast]:
+        """Every arm of every question against its reference."""
+        return [each for question in self.design.questions for each in self._contrasts(question)]
+
+    def _contrasts(self, question: Question) -> list[Contrast]:
+        found = [
+            (distribution, arm, self.effect({arm: 1.0, question.reference: -1.0}, None, distribution, question.arms))
+            for distribution in question.distributions
+            for arm in question.others
+        ]
+        adjusted = holm([effect.p for _, _, effect in found])
+        return [
+            Contrast(question=question, distribution=distribution, arm=arm, effect=effect, adjusted=p)
+            for (distribution, arm, effect), p in zip(found, adjusted, strict=True)
+        ]
+
+    def parameters(self, arm: str) -> int:
+        """Weights of all networks of an arm together."""
+        return sum(parameter.numel() for parameter in self.policies[arm, 0].network.parameters())
+
+    def seconds(self, arm: str) -> float:
+        """Wall-clock time of a run's training, mean over runs."""
+        found = []
+        for seed in range(self.design.seeds):
+            with mendable(self.folders[arm, seed]):
+                found.append(checkpoint.seconds_spent(self.folders[arm, seed]))
+        return fmean(found)
 
 
-def perform_study(
-    out: Path, manifest: Manifest, jobs: Sequence[Job], workers: int
-) -> tuple[list[RunRow], list[Session]]:
-    """Do the runs that are missing, and write ``rows.csv``; the rows of all runs, and the sessions they took.
+def perform_study(design: Design, out: Path, workers: int) -> Study:
+    """Do the runs that are missing.
 
     Args:
-        out: folder of the study, new, empty, or of the same one.
-        manifest: of the study.
-        jobs: all its runs.
-        workers: runs at a time.
+        design: of the study.
+        out: its folder, new, empty, or of the same study.
+        workers: runs at a time, each with one CPU thread.
 
     Raises:
         MrtaError: if the folder holds anything else, a file cannot be read or written, or training diverges.
     """
-    with cpu_threads(1):
-        open_experiment(out, manifest)
-        sessions = RowsFile(out / "sessions.csv", Session)
-        missing = [job for job in jobs if not job.rows_file.exists()]
-        if missing:
-            sessions.append(this_session(1))
-        train_all(jobs, missing, workers)
-    rows = [row for job in jobs for row in rows_of(job)]
-    write_records(rows, out / "rows.csv")
-    return rows, sessions.rows
-
-
-def read_curves(jobs: Iterable[Job]) -> dict[tuple[str, int], LearningCurve]:
-    """The learning curve of each (variant, seed)."""
+    if not 1 <= workers <= MAX_WORKERS:
+        raise ConfigError(f"workers is {workers}; expected a whole number from 1 to {MAX_WORKERS}")
+    runs, manifest = design.runs(out), make_manifest(design.command, design.all_settings, design.cases())
+    experiment = Experiment(out, manifest)
+    rows = experiment.measure("rows.csv", RunRow, RUN_KEY, [run.cell for run in runs], workers)
     curves = {}
-    for job in jobs:
-        with mendable(job.folder):
-            curves[job.variant, job.seed] = read_history(job.folder)
-    return curves
-
-
-def command_line(manifest: Manifest, *names: str) -> tuple[tuple[str, str], ...]:
-    """What makes the study again: the command with these settings as flags, and the version.
-
-    Args:
-        manifest: of the study.
-        names: of settings, those with a list of names given separated by commas.
-    """
-
-    def shown(value: Any) -> str:
-        return ",".join(value) if isinstance(value, list) else str(value)
-
-    flags = " ".join(f"--{name.replace('_', '-')} {shown(manifest.settings[name])}" for name in names)
-    return (("Command", f"mrta-zoo {manifest.command} --out DIR {flags}"), ("Version", f"mrta_zoo {__version__}"))
-
-
-def trained_on(sessions: Sequence[Session]) -> tuple[tuple[str, str], ...]:
-    """The machine of each session in which runs were trained, and how busy it was."""
-    return tuple(
-        (
-            f"Trained from {session.started}",
-            f"{session.processor}, {session.cores} cores usable, load "
-            f"{'unknown' if session.load is None else f'{session.load:g}'} at the beginning, one torch thread a "
-            f"process, {session.system}; {session.libraries}",
-        )
-        for session in sessions
+    for run in runs:
+        with mendable(run.folder):
+            curves[run.key] = read_history(run.folder)
+    return Study(
+        design=design,
+        manifest=manifest,
+        machines=experiment.machines,
+        rows=rows,
+        curves=curves,
+        folders={run.key: run.folder for run in runs},
     )

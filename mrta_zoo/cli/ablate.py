@@ -1,27 +1,20 @@
-"""The command ``mrta-zoo ablate``: what is trained, on how many processes, and what becomes of it."""
+"""The command ``mrta-zoo ablate``."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
 from tyro.conf import arg
 
 from mrta_zoo.cli.flags import names, parse
-from mrta_zoo.eval.experiment import make_manifest, resumable
+from mrta_zoo.eval.experiment import resumable
 from mrta_zoo.eval.report.files import publish
-from mrta_zoo.eval.studies.ablation.questions import QUESTIONS, needed
-from mrta_zoo.eval.studies.ablation.report import make_report
-from mrta_zoo.eval.studies.ablation.study import Study
-from mrta_zoo.eval.studies.ablation.variants import ROBOTS, Budget, all_variants
-from mrta_zoo.eval.studies.held_out import HeldOut
-from mrta_zoo.eval.studies.job import Job
-from mrta_zoo.eval.studies.study import check_counts, choose, perform_study, read_curves
-from mrta_zoo.io import Case
-
-USUAL = Budget()
+from mrta_zoo.eval.studies.ablation.design import PAPER_UPDATES, QUESTIONS, USUAL, ablation
+from mrta_zoo.eval.studies.ablation.report import ablation_report
+from mrta_zoo.eval.studies.study import perform_study
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +37,7 @@ class Ablate:
     """Runs of each variant, with seeds 0, 1, …; with one there are no intervals."""
     updates: int = USUAL.updates
     """Gradient steps of each run with the candidate decoder."""
-    paper_updates: int = USUAL.paper_updates
+    paper_updates: int = PAPER_UPDATES
     """Gradient steps of each run with the paper's decoder, which takes about a fifth of the time a step."""
     scenarios: int = USUAL.scenarios
     """Scenarios an update."""
@@ -66,47 +59,17 @@ def ablate_command(argv: Sequence[str]) -> None:
         MrtaError: if an option cannot be used, a file cannot be read or written, or training diverges.
     """
     command = parse(Ablate, argv, "ablate")
-    check_counts(command.seeds, command.workers)
-    questions = choose(names(command.only, "only", "questions", "encoder,moments"), QUESTIONS)
-    budget = Budget(
-        updates=command.updates,
-        paper_updates=command.paper_updates,
-        scenarios=command.scenarios,
-        samples=command.samples,
-        tasks=command.tasks,
+    design = ablation(
+        names(command.only, "only", "questions", "encoder,moments"),
+        command.seeds,
+        replace(
+            USUAL,
+            updates=command.updates,
+            scenarios=command.scenarios,
+            samples=command.samples,
+            tasks=command.tasks,
+        ),
+        command.paper_updates,
+        command.held_out,
     )
-    held_out = HeldOut(command.tasks, command.held_out, ROBOTS)
-    evaluated = needed(questions)
-    every = all_variants(budget)
-    jobs = [
-        Job(
-            variant=variant.name,
-            folder=command.out / "runs" / f"{variant.name}-seed{seed}",
-            config=replace(variant.config, seed=seed),
-            held_out=held_out,
-            distributions=evaluated[variant.name],
-        )
-        for variant in every.values()
-        if variant.name in evaluated
-        for seed in range(command.seeds)
-    ]
-    settings = {"only": [question.name for question in questions], "seeds": command.seeds, **asdict(budget),
-                "held_out": command.held_out}  # fmt: skip
-    distributions = dict.fromkeys(each for question in questions for each in question.distributions)
-    cases = [
-        Case(scenario.name, scenario)
-        for distribution in distributions
-        for robots in ROBOTS
-        for scenario in held_out.scenarios(distribution, robots)
-    ]
-    manifest = make_manifest("ablate", settings, cases, [])
-    rows, sessions = perform_study(command.out, manifest, jobs, command.workers)
-    study = Study(
-        questions=questions,
-        variants={name: every[name] for name in evaluated},
-        budget=budget,
-        seeds=command.seeds,
-        rows=rows,
-        curves=read_curves(jobs),
-    )
-    publish(make_report(study, manifest, sessions), command.out)
+    publish(ablation_report(perform_study(design, command.out, command.workers)), command.out)

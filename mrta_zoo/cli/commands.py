@@ -11,6 +11,7 @@ from typing import Annotated
 
 from tyro.conf import Positional, arg
 
+from mrta_zoo.cli.case_choice import read_one, suite_named
 from mrta_zoo.cli.flags import names, optional, parse
 from mrta_zoo.cli.plan_files import is_episode
 from mrta_zoo.cli.solved_files import write_schedule, write_solved
@@ -19,7 +20,7 @@ from mrta_zoo.errors import ScenarioError
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.runner import evaluate, solve_and_score
 from mrta_zoo.eval.table import summary_tables
-from mrta_zoo.io import Case, read_cases, read_scenario
+from mrta_zoo.io import Case, read_scenario
 from mrta_zoo.io.destination import check_outputs
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.paths import suffix_of
@@ -35,10 +36,8 @@ from mrta_zoo.policies.registry import METHODS, POLISH, make_solver, method_name
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.show.plan.text import missed, proven, schedule_table, totals
 from mrta_zoo.show.terminal.console import preparing, progress_bar, results_console, say, warn
-from mrta_zoo.suite import builtin_suite
 from mrta_zoo.wording import counted
 
-BUILTIN = "builtin"
 LEARNED = "capam-plus"
 """What plans if no method is named, but how learned ones should."""
 
@@ -218,9 +217,10 @@ class Eval:
       mrta-zoo eval --cases taptc/n100 --methods capam,runs/mine --decode sample
     """
 
-    cases: Annotated[str, arg(metavar="DIR|builtin")]
+    cases: Annotated[str, arg(metavar="DIR|SUITE")]
     """A folder of cases (TAPTC: group*/NAME.txt with agent/NAME.txt or agent/a{n}i0{i}.txt; or .json or .csv
-    scenarios), or builtin: 96 drawn cases with 100 tasks and 2 to 7 robots."""
+    scenarios), or a built-in suite: suite-100 (or builtin), 96 cases with 100 tasks and 2 to 7 robots, or suite-200,
+    96 cases with 200 tasks and 4 to 14."""
     methods: Annotated[
         str, arg(metavar="METHOD,METHOD,…", help=f"What to compare: {', '.join(method_names())}, {TRAINED_HELP}.")
     ] = "random,nearest,edf,capam,capam-plus"
@@ -246,7 +246,7 @@ def eval_command(argv: Sequence[str]) -> None:
     with preparing():
         solvers = {method: command.planning.solver(method) for method in methods}
     command.planning.warn_unused(methods)
-    cases = builtin_cases() if command.cases == BUILTIN else read_cases(command.cases, warn)
+    cases = read_one(command.cases)
     with cpu_threads(command.planning.threads):
         rows = run_with_progress(cases, solvers)
     with Outputs() as outputs:
@@ -264,12 +264,7 @@ def eval_command(argv: Sequence[str]) -> None:
 
 
 def _files_of(cases: str) -> list[Path]:
-    return list(Path(cases).rglob("*")) if cases != BUILTIN and os.path.isdir(cases) else []
-
-
-def builtin_cases() -> list[Case]:
-    """The built-in suite."""
-    return [Case(scenario.name, scenario) for scenario in builtin_suite()]
+    return list(Path(cases).rglob("*")) if suite_named(cases) is None and os.path.isdir(cases) else []
 
 
 def run_with_progress(cases: Sequence[Case], solvers: dict[str, Solver]) -> list[Row]:

@@ -9,7 +9,8 @@ from pathlib import Path
 from rich.console import Console
 
 from mrta_zoo import mrta_v0
-from mrta_zoo.cli.commands import builtin_cases, run_with_progress
+from mrta_zoo.cli.case_choice import read_one
+from mrta_zoo.cli.commands import run_with_progress
 from mrta_zoo.cli.solved_files import write_solved
 from mrta_zoo.digits import full, rounded, share
 from mrta_zoo.errors import ConfigError
@@ -53,7 +54,7 @@ def run_demo(folder: Path, policy_name: str = "capam-plus") -> None:
     policy = load_learned(policy_name)
     _make(folder)
     console = results_console()
-    cases = builtin_cases()
+    cases = read_one("suite-100")
     scenarios = {case.name: case.scenario for case in cases}
 
     _heading(console, "1. Robots take turns in the environment, all under one shared policy")

@@ -1,26 +1,20 @@
-"""The command ``mrta-zoo sharing``: what is trained, on how many processes, and what becomes of it."""
+"""The command ``mrta-zoo sharing``."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
 from tyro.conf import arg
 
 from mrta_zoo.cli.flags import names, parse
-from mrta_zoo.eval.experiment import make_manifest, resumable
+from mrta_zoo.eval.experiment import resumable
 from mrta_zoo.eval.report.files import publish
-from mrta_zoo.eval.studies.held_out import HeldOut
-from mrta_zoo.eval.studies.job import Job
-from mrta_zoo.eval.studies.sharing.arms import QUESTIONS, TRAINED_ROBOTS, UNSEEN_ROBOTS, Budget, needed
-from mrta_zoo.eval.studies.sharing.report import make_report
-from mrta_zoo.eval.studies.sharing.study import DISTRIBUTION, Study
-from mrta_zoo.eval.studies.study import check_counts, choose, perform_study, read_curves
-from mrta_zoo.io import Case
-
-USUAL = Budget()
+from mrta_zoo.eval.studies.sharing.design import QUESTIONS, USUAL, sharing
+from mrta_zoo.eval.studies.sharing.report import sharing_report
+from mrta_zoo.eval.studies.study import perform_study
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,37 +58,16 @@ def sharing_command(argv: Sequence[str]) -> None:
         MrtaError: if an option cannot be used, a file cannot be read or written, or training diverges.
     """
     command = parse(Share, argv, "sharing")
-    check_counts(command.seeds, command.workers)
-    questions = choose(names(command.only, "only", "questions", "episodes,decisions"), QUESTIONS)
-    budget = Budget(updates=command.updates, scenarios=command.scenarios, samples=command.samples, tasks=command.tasks)
-    arms = needed(questions, budget)
-    every = HeldOut(command.tasks, command.held_out, tuple(sorted({*TRAINED_ROBOTS, *UNSEEN_ROBOTS})))
-    jobs = [
-        Job(
-            variant=arm.name,
-            folder=command.out / "runs" / f"{arm.name}-seed{seed}",
-            config=replace(arm.config, seed=seed),
-            held_out=replace(every, robots=arm.robots),
-            distributions=(DISTRIBUTION,),
-        )
-        for seed in range(command.seeds)  # all arms with a seed before the next one
-        for arm in arms.values()
-    ]
-    settings = {"only": [question.name for question in questions], "seeds": command.seeds, **asdict(budget),
-                "held_out": command.held_out}  # fmt: skip
-    cases = [
-        Case(scenario.name, scenario) for robots in every.robots for scenario in every.scenarios(DISTRIBUTION, robots)
-    ]
-    manifest = make_manifest("sharing", settings, cases, [])
-    rows, sessions = perform_study(command.out, manifest, jobs, command.workers)
-    study = Study(
-        questions=questions,
-        arms={name: arms[name] for question in questions for name in question.arms},
-        budget=budget,
-        seeds=command.seeds,
-        held_out=every,
-        rows=rows,
-        curves=read_curves(jobs),
-        folders={(job.variant, job.seed): job.folder for job in jobs},
+    design = sharing(
+        names(command.only, "only", "questions", "episodes,decisions"),
+        command.seeds,
+        replace(
+            USUAL,
+            updates=command.updates,
+            scenarios=command.scenarios,
+            samples=command.samples,
+            tasks=command.tasks,
+        ),
+        command.held_out,
     )
-    publish(make_report(study, manifest, sessions), command.out)
+    publish(sharing_report(perform_study(design, command.out, command.workers)), command.out)

@@ -12,7 +12,8 @@ from valid_files import TABLE
 
 from mrta_zoo.cli.main import main
 from mrta_zoo.debug.recorder import record
-from mrta_zoo.eval.experiment import MANIFEST, Manifest, open_experiment
+from mrta_zoo.eval.experiment import MANIFEST, open_folder
+from mrta_zoo.eval.manifest import Manifest
 from mrta_zoo.eval.rows_file import RowsFile
 from mrta_zoo.io import read_plan, read_trace, write_plan, write_trace
 from mrta_zoo.io.files import read_scenario
@@ -80,7 +81,7 @@ def test_commands_that_are_piped(files: Path, monkeypatch: pytest.MonkeyPatch, c
 def test_policies_and_runs(tmp_path: Path) -> None:
     pytest.importorskip("torch")
     from mrta_zoo.cli.commands import policy_files
-    from mrta_zoo.eval.experiment import digest_of_weights
+    from mrta_zoo.eval.manifest import digest_of_weights
     from mrta_zoo.policies.neural.capam.config import NetworkConfig
     from mrta_zoo.policies.neural.policy import load_policy
     from mrta_zoo.policies.neural.sharing import build_network
@@ -142,7 +143,7 @@ def test_what_is_resumed(tmp_path: Path) -> None:
     assert RowsFile(tmp_path / "rows.csv", Measured).rows == [Measured("caf\u00e9", 1), Measured("b", 2)]
 
     manifest = Manifest(command="c", settings={"cases": "caf\u00e9"}, cases="", weights={})
-    open_experiment(tmp_path / "folder", manifest)
+    open_folder(tmp_path / "folder", manifest)
     path = tmp_path / "folder" / MANIFEST
     path.write_bytes(MARK + path.read_bytes().replace("caf\u00e9".encode(), "cafe\u0301".encode()))
-    open_experiment(tmp_path / "folder", manifest)
+    open_folder(tmp_path / "folder", manifest)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import astuple, replace
 from pathlib import Path
 
@@ -11,22 +12,17 @@ import pytest
 from mrta_zoo.cli.case_choice import read_all, shown_cases
 from mrta_zoo.cli.main import main
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.eval.cells import Cell, Tell, case_cells
 from mrta_zoo.eval.converge.curves import BudgetRow
-from mrta_zoo.eval.experiment import (
-    MANIFEST,
-    Manifest,
-    digest_of_cases,
-    digest_of_weights,
-    make_manifest,
-    measure,
-    open_experiment,
-)
-from mrta_zoo.eval.rows import Row
+from mrta_zoo.eval.experiment import MANIFEST, Experiment, open_folder
+from mrta_zoo.eval.manifest import Manifest, digest_of_cases, digest_of_weights, make_manifest
+from mrta_zoo.eval.rows import KEY, Row
 from mrta_zoo.eval.rows_file import RowsFile
-from mrta_zoo.eval.runner import row_of
+from mrta_zoo.eval.runner import NamedSolver, row_of
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.io import Case, write_scenario
 from mrta_zoo.plan import Plan
+from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import make_solver
 from mrta_zoo.scenario import Scenario
 
@@ -56,8 +52,10 @@ class Breaks:
         return self.inner.solve(scenario)
 
 
-def known(row: Row) -> tuple[str, str]:
-    return row.case, row.method
+def measured(folder: Path, solver: Solver, name: str = "m", cases: Sequence[Case] = CASES) -> list[Row]:
+    """The rows of all cases by one method, of which the folder may hold some."""
+    cells = case_cells(cases, NamedSolver(name, solver), row_of)
+    return Experiment(folder, MANIFEST_NOW).measure("rows.csv", Row, KEY, cells)
 
 
 def test_rows_read_back_as_they_were(tmp_path: Path) -> None:
@@ -119,26 +117,57 @@ def test_empty_columns_of_a_spreadsheet_are_passed_over(tmp_path: Path, at: int)
 
 
 def test_an_interruption_costs_one_case(tmp_path: Path) -> None:
-    path = tmp_path / "rows.csv"
-    first = Breaks(after=2)
     with pytest.raises(InterruptedHereError):
-        measure(CASES, {"m": first}, RowsFile(path, Row), row_of, known)
-    assert [row.case for row in RowsFile(path, Row).rows] == ["a", "b,c"]
+        measured(tmp_path / "out", Breaks(after=2))
+    assert [row.case for row in RowsFile(tmp_path / "out" / "rows.csv", Row).rows] == ["a", "b,c"]
     second = Breaks(after=9)
-    measure(CASES, {"m": second}, RowsFile(path, Row), row_of, known)
+    resumed = measured(tmp_path / "out", second)
     assert second.solved == ['d"e']
-    whole = RowsFile(tmp_path / "whole.csv", Row)
-    measure(CASES, {"m": make_solver("nearest")}, whole, row_of, known)
-    assert [replace(row, seconds=0) for row in RowsFile(path, Row).rows] == [
-        replace(row, seconds=0) for row in whole.rows
-    ]
+    whole = measured(tmp_path / "whole", make_solver("nearest"))
+    assert [replace(row, seconds=0) for row in resumed] == [replace(row, seconds=0) for row in whole]
+    assert RowsFile(tmp_path / "out" / "rows.csv", Row).rows == resumed
+    assert len(Experiment(tmp_path / "out", MANIFEST_NOW).machines) == 2  # of two sessions
+
+
+def test_a_cell_is_whole_or_done_again(tmp_path: Path) -> None:
+    """Of several rows, and with something beside them that may be lost."""
+    performed, kept = [], {"x": True, "y": True}
+
+    def cell(method: str) -> Cell[Row]:
+        rows = [replace(ROW, case=case, method=method) for case in ("one", "two")]
+
+        def perform(tell: Tell) -> list[Row]:
+            performed.append(method)
+            tell(0.5)
+            return rows
+
+        keys = tuple((row.case, row.method) for row in rows)
+        return Cell(label=method, keys=keys, perform=perform, kept=lambda: kept[method])
+
+    path, cells = tmp_path / "rows.csv", [cell("x"), cell("y")]
+
+    def go() -> list[tuple[str, str]]:
+        return [
+            (row.method, row.case) for row in Experiment(tmp_path, MANIFEST_NOW).measure("rows.csv", Row, KEY, cells)
+        ]
+
+    assert go() == go() == [("x", "one"), ("x", "two"), ("y", "one"), ("y", "two")]
+    assert performed == ["x", "y"]
+    whole = path.read_text()
+    path.write_text(whole[: whole.index("two")])  # killed while the rows of x were written
+    assert len(go()) == 4
+    assert performed == ["x", "y", "x", "y"]
+    kept["x"] = False
+    assert len(go()) == 4
+    assert performed[4:] == ["x"]
+    assert path.read_text() == whole  # in the order of the cells, though x was done last
 
 
 def test_a_folder_is_opened_again_by_the_same_command_only(tmp_path: Path) -> None:
     folder = tmp_path / "new" / "out"
-    open_experiment(folder, MANIFEST_NOW)
+    open_folder(folder, MANIFEST_NOW)
     (folder / "rows.csv").write_text("")
-    open_experiment(folder, MANIFEST_NOW)
+    open_folder(folder, MANIFEST_NOW)
     for other, sentence in (
         (replace(MANIFEST_NOW, command="converge"), "the command was reproduce, now it is converge"),
         (replace(MANIFEST_NOW, version="9"), "made by version .*, this is 9"),
@@ -148,18 +177,18 @@ def test_a_folder_is_opened_again_by_the_same_command_only(tmp_path: Path) -> No
         (replace(MANIFEST_NOW, weights={"capam": "9"}), "the weights of capam have changed"),
     ):
         with pytest.raises(ConfigError, match=f"out holds results of another run: .*{sentence}.*; expected the same"):
-            open_experiment(folder, other)
+            open_folder(folder, other)
 
 
 def test_foreign_folders_are_refused(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(ConfigError, match="file is a file"):
-        open_experiment(tmp_path / "file", MANIFEST_NOW)
+        open_folder(tmp_path / "file", MANIFEST_NOW)
     with pytest.raises(ConfigError, match=r"is not empty and holds no manifest\.json"):
-        open_experiment(tmp_path, MANIFEST_NOW)
+        open_folder(tmp_path, MANIFEST_NOW)
     (tmp_path / MANIFEST).write_text('{"mine": true}')
     with pytest.raises(ConfigError, match="expected what this command has written there"):
-        open_experiment(tmp_path, MANIFEST_NOW)
+        open_folder(tmp_path, MANIFEST_NOW)
     assert sorted(path.name for path in tmp_path.glob("[!.]*")) == ["file", MANIFEST]
 
 
@@ -193,12 +222,10 @@ def test_accents_may_be_written_in_two_ways(tmp_path: Path) -> None:
     for spelt in (two, one, two):
         case = replace(CASES[0], name=spelt)
         cases = digest_of_cases([case])
-        open_experiment(
-            tmp_path / "out", Manifest(command="c", settings={"m": [spelt]}, cases=cases, weights={spelt: ""})
-        )
-        file = RowsFile(tmp_path / "out" / "rows.csv", Row)
-        measure([case], {spelt: make_solver("nearest")}, file, row_of, known)
-        assert len(file.rows) == 1
+        manifest = Manifest(command="c", settings={"m": [spelt]}, cases=cases, weights={spelt: ""})
+        cells = case_cells([case], NamedSolver(spelt, make_solver("nearest")), row_of)
+        assert len(Experiment(tmp_path / "out", manifest).measure("rows.csv", Row, KEY, cells)) == 1
+        assert len(RowsFile(tmp_path / "out" / "rows.csv", Row).rows) == 1
 
 
 def test_a_method_whose_path_has_accents(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -229,7 +256,11 @@ def test_cases_of_several_folders(tmp_path: Path) -> None:
     found = read_all(f"{tmp_path}/one, {tmp_path}/two")
     assert [case.name for case in found] == ["one", "two"]
     assert shown_cases(f"{tmp_path}/one/,{tmp_path}/two") == "one,two"
-    assert [len(read_all("builtin")), shown_cases("builtin")] == [192, "builtin"]
+    assert shown_cases(f"builtin,{tmp_path}/one") == "suite-100,one"
+    assert [len(read_all("builtin")), len(read_all("suite-100, suite-200"))] == [96, 192]
+    assert [case.name for case in read_all(f"suite-200,{tmp_path}/one")][-1] == "one"
+    with pytest.raises(ConfigError, match="suite-100 is named twice"):
+        read_all("builtin,suite-100")
     (tmp_path / "two" / "one.csv").write_bytes((tmp_path / "one" / "one.csv").read_bytes())
     found = read_all(f"{tmp_path}/one,{tmp_path}/two")
     assert [case.name for case in found] == ["one", "two/one", "two"]
@@ -244,16 +275,22 @@ def test_two_runs_cannot_share_a_folder(tmp_path: Path) -> None:
     folder = tmp_path / "out"
     folder.mkdir()
     with FileLock(folder / ".lock"), pytest.raises(ConfigError, match="is in use by another run"):
-        open_experiment(folder, make_manifest("reproduce", {}, CASES, []))
-    open_experiment(folder, make_manifest("reproduce", {}, CASES, []))
+        open_folder(folder, make_manifest("reproduce", {}, CASES, []))
+    open_folder(folder, make_manifest("reproduce", {}, CASES, []))
 
 
-def test_a_row_that_is_there_twice_is_refused(tmp_path: Path) -> None:
-    file = RowsFile(tmp_path / "rows.csv", Row)
-    measure(CASES, {"nearest": make_solver("nearest")}, file, row_of, lambda row: (row.case, row.method))
-    file.append(file.rows[0])
-    with pytest.raises(ConfigError, match=r"rows\.csv has two rows for method nearest on case"):
-        measure(CASES, {"nearest": make_solver("nearest")}, file, row_of, lambda row: (row.case, row.method))
+@pytest.mark.parametrize(
+    ("case", "sentence"),
+    [
+        ("a", r"rows\.csv has two rows for case a, method m; expected one"),
+        ("zz", r"rows\.csv has a row for case zz, method m, which this command does not ask for"),
+    ],
+)
+def test_rows_that_nobody_asked_for_are_refused(tmp_path: Path, case: str, sentence: str) -> None:
+    measured(tmp_path, make_solver("nearest"))
+    RowsFile(tmp_path / "rows.csv", Row).append(replace(ROW, case=case, method="m"))
+    with pytest.raises(ConfigError, match=sentence):
+        measured(tmp_path, make_solver("nearest"))
 
 
 def test_garbage_that_csv_cannot_hold_is_refused(tmp_path: Path) -> None:
@@ -262,31 +299,14 @@ def test_garbage_that_csv_cannot_hold_is_refused(tmp_path: Path) -> None:
         RowsFile(tmp_path / "rows.csv", Row)
 
 
-def test_a_row_of_another_case_or_method_is_refused(tmp_path: Path) -> None:
-    file, solvers = RowsFile(tmp_path / "rows.csv", Row), {"nearest": make_solver("nearest")}
-    measure(CASES, solvers, file, row_of, lambda row: (row.case, row.method))
-    file.append(replace(file.rows[0], case="zz"))
-    with pytest.raises(ConfigError, match=r"rows\.csv has a row for method nearest on case zz, which this"):
-        measure(CASES, solvers, file, row_of, lambda row: (row.case, row.method))
-
-
-@pytest.mark.parametrize(
-    ("command", "where"),
-    [
-        ("reproduce", "mrta_zoo.cli.reproduce"),
-        ("converge", "mrta_zoo.cli.converge"),
-        ("ablate", "mrta_zoo.cli.ablate"),
-        ("sharing", "mrta_zoo.cli.sharing"),
-    ],
-)
+@pytest.mark.parametrize("command", ["reproduce", "converge", "ablate", "sharing"])
 def test_ctrl_c_says_how_to_go_on(
-    command: str, where: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    command: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def interrupted(*args: object) -> object:
         raise KeyboardInterrupt
 
-    module = pytest.importorskip(where)
-    monkeypatch.setattr(module, "parse", interrupted)
+    monkeypatch.setattr(f"mrta_zoo.cli.{command}.parse", interrupted)
     assert main([command, "--out", "x"]) == 130
     assert capsys.readouterr().err == "the same command goes on where it stopped\ninterrupted\n"
 
@@ -294,8 +314,8 @@ def test_ctrl_c_says_how_to_go_on(
 def test_an_experiment_may_lie_behind_links(tmp_path: Path) -> None:
     (tmp_path / "out").symlink_to(tmp_path / "elsewhere")
     manifest = make_manifest("test", {}, [], [])
-    open_experiment(tmp_path / "out", manifest)
-    open_experiment(tmp_path / "out", manifest)
+    open_folder(tmp_path / "out", manifest)
+    open_folder(tmp_path / "out", manifest)
     (tmp_path / "out" / "rows.csv").symlink_to(tmp_path / "rows")
     row = Row("a", "m", 1, 1, 1, 1.0, 0.0, 0.0, 0.0, 0.0)
     for count in (1, 2):

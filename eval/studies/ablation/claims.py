@@ -8,17 +8,16 @@ from typing import Literal
 
 from mrta_zoo.eval.report import wording
 from mrta_zoo.eval.significance import SIGNIFICANT, holm
-from mrta_zoo.eval.studies.ablation.questions import ENCODER, MOMENTS, Question
-from mrta_zoo.eval.studies.ablation.study import Study
-from mrta_zoo.eval.studies.ablation.variants import CAPAM, ROBOTS
-from mrta_zoo.eval.studies.effects import Effect, effect_of, equal_weights
+from mrta_zoo.eval.studies.ablation.design import CAPAM, ENCODER, MOMENTS, ROBOTS
+from mrta_zoo.eval.studies.effects import Effect
+from mrta_zoo.eval.studies.study import Study
 
 Verdict = Literal["supported", "not supported", "undecided"]
 
 MATTERS = 1.0
 """Percentage points below which an advantage is not worth speaking of."""
 AM = "am"
-EVALUATED_ON = "taptc"
+ADVANTAGE = {CAPAM: 1.0, AM: -1.0}
 
 GAP: dict[int, float] = {ROBOTS[0]: 1.0, ROBOTS[-1]: -1.0}
 """Weights of the numbers of robots: the gap at the most tasks a robot, minus that at the fewest."""
@@ -54,7 +53,7 @@ class Claim:
     def sentence(self) -> str:
         """The answer in a line."""
         difference = self.effect.difference
-        p = f", adjusted p {_equals(wording.p_value(self.adjusted))}" if self.adjusted is not None else ""
+        p = f", adjusted p {wording.equals(wording.p_value(self.adjusted))}" if self.adjusted is not None else ""
         interval = (
             f"{wording.INTERVAL} {wording.number(difference.low, signed=True)} to "
             f"{wording.number(difference.high, signed=True)}{p}"
@@ -70,33 +69,33 @@ class Claim:
 def claims_of(study: Study) -> list[Claim]:
     """The claims that the study's questions can answer, in the paper's order."""
     found: list[tuple[str, str, Effect]] = []
-    asked = {question.name for question in study.questions}
-    if ENCODER.name in asked:
+    asked = study.design.questions
+    if ENCODER in asked:
         found.append(
             (
                 "CapAM over AM",
                 "Paper: with 100 tasks CapAM completes 3 to 13.5 points more than AM. Here: capam minus am, mean over "
                 f"{wording.listed([str(each) for each in ROBOTS])} robots.",
-                _effect(study, ENCODER, {CAPAM: 1.0, AM: -1.0}, equal_weights(ROBOTS)),
+                study.effect(ADVANTAGE, among=ENCODER.arms),
             )
         )
-    if MOMENTS.name in asked:
+    if MOMENTS in asked:
         found.append(
             (
                 "P ≥ 2 over P = 1",
                 "Paper: P = 1 is slightly poorer than P = 2 and 3, which hardly differ. Here: the mean of P = 2 and 3, "
                 "minus P = 1.",
-                _effect(study, MOMENTS, {CAPAM: 0.5, "capam-p2": 0.5, "capam-p1": -1.0}, equal_weights(ROBOTS)),
+                study.effect({CAPAM: 0.5, "capam-p2": 0.5, "capam-p1": -1.0}, among=MOMENTS.arms),
             )
         )
-    if ENCODER.name in asked:
-        most, fewest = (f"{study.budget.tasks / robots:g}" for robots in GAP)
+    if ENCODER in asked:
+        most, fewest = (f"{study.design.budget.tasks / robots:g}" for robots in GAP)
         found.append(
             (
                 "The gap grows with tasks a robot",
                 "Paper: CapAM is furthest ahead of AM where there are many tasks a robot. Here: capam minus am at "
                 f"{most} tasks a robot, minus the same at {fewest}.",
-                _effect(study, ENCODER, {CAPAM: 1.0, AM: -1.0}, GAP),
+                study.effect(ADVANTAGE, GAP, among=ENCODER.arms),
             )
         )
     adjusted = holm([effect.p for _, _, effect in found])
@@ -108,15 +107,7 @@ def claims_of(study: Study) -> list[Claim]:
 
 def gap_by_robots(study: Study) -> list[tuple[int, Effect]]:
     """CapAM minus AM for each number of robots."""
-    return [(robots, _effect(study, ENCODER, {CAPAM: 1.0, AM: -1.0}, {robots: 1.0})) for robots in ROBOTS]
-
-
-def _effect(study: Study, question: Question, coefficients: dict[str, float], weights: dict[int, float]) -> Effect:
-    return effect_of(study.runs(question, EVALUATED_ON), coefficients, weights, study.decoders)
-
-
-def _equals(p: str) -> str:
-    return p if p.startswith("<") else f"= {p}"
+    return [(robots, study.effect(ADVANTAGE, {robots: 1.0}, among=ENCODER.arms)) for robots in ROBOTS]
 
 
 def verdicts(claims: Sequence[Claim]) -> str:

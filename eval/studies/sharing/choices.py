@@ -15,8 +15,7 @@ from statistics import fmean
 import torch
 from torch import Tensor
 
-from mrta_zoo.eval.studies.sharing.arms import TRAINED_ROBOTS
-from mrta_zoo.eval.studies.sharing.study import DISTRIBUTION, Study
+from mrta_zoo.eval.studies.study import Study
 from mrta_zoo.policies.neural.capam.inputs import Tasks
 from mrta_zoo.policies.neural.capam.network import AllocationNetwork
 from mrta_zoo.policies.neural.rollout import Segment
@@ -62,14 +61,16 @@ class Unlikeness:
 def unlikeness(study: Study) -> list[Unlikeness]:
     """Of every arm: its networks against each other, and each against itself trained with other seeds."""
     scenarios = [
-        scenario for robots in TRAINED_ROBOTS for scenario in study.held_out.scenarios(DISTRIBUTION, robots)[:SCENARIOS]
+        scenario
+        for robots in study.design.compared
+        for scenario in study.design.held_out.scenarios("taptc", robots)[:SCENARIOS]
     ]
     asked = Questionnaire(scenarios)
     found = []
-    for arm in study.arms:
+    for arm in study.design.arms:
         answers = [
             [asked.answers(network) for network in members(study.policies[arm, seed].network)]
-            for seed in range(study.seeds)
+            for seed in range(study.design.seeds)
         ]
         across = [pair for of_run in answers for pair in combinations(of_run, 2)]
         again = [pair for of_network in zip(*answers, strict=True) for pair in combinations(of_network, 2)]

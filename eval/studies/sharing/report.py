@@ -4,20 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 import pandas as pd
 
 from mrta_zoo.digits import share
-from mrta_zoo.eval.experiment import Manifest
-from mrta_zoo.eval.machine import Session
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.report import wording
 from mrta_zoo.eval.report.parts import Picture, Report, Section, Table
-from mrta_zoo.eval.significance import LEVEL
-from mrta_zoo.eval.studies.hardly import hardly_trained, warning
-from mrta_zoo.eval.studies.sharing.arms import INDEPENDENT, MOST, NETWORK, TRAINED_ROBOTS
+from mrta_zoo.eval.significance import LEVEL, Estimate, estimate_mean
+from mrta_zoo.eval.studies.design import Question
+from mrta_zoo.eval.studies.report import study_report
 from mrta_zoo.eval.studies.sharing.choices import ACROSS, AGAIN, SCENARIOS, Unlikeness, unlikeness
+from mrta_zoo.eval.studies.sharing.design import INDEPENDENT, MOST, NETWORK, TRAINED_ROBOTS
 from mrta_zoo.eval.studies.sharing.figures import curves_data, draw_by_robots, draw_curves
-from mrta_zoo.eval.studies.sharing.study import Comparison, Study
-from mrta_zoo.eval.studies.study import command_line, trained_on
+from mrta_zoo.eval.studies.study import Study
+from mrta_zoo.policies.registry import make_solver
+from mrta_zoo.verify import verify
 from mrta_zoo.wording import counted
 
 INTERVALS = (
@@ -27,79 +29,83 @@ INTERVALS = (
 TRAINED = f"{TRAINED_ROBOTS[0]} to {TRAINED_ROBOTS[-1]} robots"
 
 
-def make_report(study: Study, manifest: Manifest, sessions: Sequence[Session]) -> Report:
-    """All of it.
-
-    Args:
-        study: the rows, and what was asked.
-        manifest: of the study.
-        sessions: in which runs were trained.
-    """
-    comparisons, choices = study.comparisons(), unlikeness(study)
-    return Report(
+def sharing_report(study: Study) -> Report:
+    """All of it."""
+    choices, budget = unlikeness(study), study.design.budget
+    return study_report(
+        study,
         title="Should robots share one policy?",
         summary=(
-            *(_in_short(study, question.name, comparisons) for question in study.questions),
+            *(_in_short(study, question) for question in study.design.questions),
             *_unseen(study),
             *_choices_in_short(choices),
-            *warning(hardly_trained(study.arms, study.curves)),
         ),
         sections=(
-            _differences(study, comparisons),
+            _differences(study),
             _by_robots(study),
             *([_choices(choices)] if choices else ()),
-            _costs(study, sessions),
+            _costs(study),
             _curves(study),
         ),
-        made=(
-            *command_line(manifest, "only", "seeds", "updates", "scenarios", "samples", "tasks", "held_out"),
-            ("Seeds", f"0 to {study.seeds - 1}, of weights, training scenarios and samples"),
-            (
-                "Each run",
-                f"CapAM with embedding {NETWORK.embedding} and {NETWORK.heads} heads; plain REINFORCE, nothing to "
-                f"imitate; {study.budget.updates} updates; TAPTC-like scenarios with {study.budget.tasks} tasks and "
-                f"{TRAINED}, the first half of them (rounded down) of capacity 2, the others of 1; mask rule feasible, "
-                "objective completion, baseline samples; the policy with the best validation counts",
-            ),
-            ("Held-out scenarios", f"SHA-256 {manifest.cases}"),
-            ("Scores", "Every plan, made in one greedy pass, was scored by the package’s verifier."),
-            *trained_on(sessions),
+        flags=("only", "seeds", "updates", "scenarios", "samples", "tasks", "held_out"),
+        each_run=(
+            f"CapAM with embedding {NETWORK.embedding} and {NETWORK.heads} heads; plain REINFORCE, nothing to "
+            f"imitate; {budget.updates} updates; TAPTC-like scenarios with {budget.tasks} tasks and "
+            f"{TRAINED}, the first half of them (rounded down) of capacity 2, the others of 1; mask rule feasible, "
+            "objective completion, baseline samples; the policy with the best validation counts"
         ),
+        scores="Every plan, made in one greedy pass, was scored by the package’s verifier.",
     )
 
 
-def _in_short(study: Study, name: str, comparisons: Sequence[Comparison]) -> str:
+def _in_short(study: Study, question: Question) -> str:
     """A question's answer in a line."""
-    found = [each for each in comparisons if each.question.name == name]
-    shared = found[0].question.arms[0]
-    parts = [
-        f"{each.arm} {wording.estimate(each.effect.difference, signed=True)} points"
-        + (f", adjusted p {_equals(wording.p_value(each.adjusted))}, {'sure' if each.sure else 'not sure'}"
-           if each.adjusted is not None else "")
-        for each in found
-    ]  # fmt: skip
+    parts = []
+    for each in study.contrasts:
+        if each.question is question:
+            p = f", adjusted p {wording.equals(wording.p_value(each.adjusted))}, {'sure' if each.sure else 'not sure'}"
+            difference = wording.estimate(each.effect.difference, signed=True)
+            parts.append(f"{each.arm} {difference} points{p if each.adjusted is not None else ''}")
+    shared = question.reference
     return (
-        f"At {found[0].question.title}, {TRAINED}: {shared} completes "
+        f"At {question.title}, {TRAINED}: {shared} completes "
         f"{wording.percentage(study.mean(shared, TRAINED_ROBOTS))} %; against it {'; '.join(parts)}."
     )
 
 
 def _unseen(study: Study) -> list[str]:
     """What becomes of numbers of robots that were never trained on."""
-    unseen = [robots for robots in study.held_out.robots if robots not in TRAINED_ROBOTS]
-    first = study.questions[0]
     parts = []
-    for name in first.arms:
-        served = [robots for robots in unseen if robots in study.arms[name].robots]
-        of = ", ".join(f"{wording.number(study.mean(name, [robots]).mean)} % with {robots}" for robots in served)
+    for name in study.design.questions[0].arms:
+        of = ", ".join(
+            f"{wording.number(study.mean(name, [robots]).mean)} % with {robots}"
+            for robots in _served(study, name)
+            if robots not in TRAINED_ROBOTS
+        )
         parts.append(f"{name} {of}")
     found = [f"Numbers of robots never trained on: {'; '.join(parts)}."]
-    refusal = study.refusal(INDEPENDENT)
-    if refusal is not None:
+    if refusal := refusal_of(study, INDEPENDENT):
         found.append(
             f"Asked to plan for {counted(refusal[0], 'robot')}, {INDEPENDENT} networks refuse: “{refusal[1]}”."
         )
     return found
+
+
+def refusal_of(study: Study, arm: str) -> tuple[int, str] | None:
+    """The fewest robots that an arm has no policy for, and what it says then; None if it serves them all."""
+    beyond = [robots for robots in study.design.held_out.robots if robots not in _served(study, arm)]
+    if not beyond:
+        return None
+    try:
+        study.policies[arm, 0].solve(study.design.held_out.scenarios("taptc", beyond[0])[0])
+    except ConfigError as error:
+        return beyond[0], str(error)
+    raise AssertionError(f"{arm} serves {beyond[0]} robots")
+
+
+def _served(study: Study, arm: str) -> list[int]:
+    """The numbers of robots that an arm can decide for."""
+    return [robots for robots in study.design.held_out.robots if study.design.arms[arm].serves(robots)]
 
 
 def _choices_in_short(choices: Sequence[Unlikeness]) -> list[str]:
@@ -120,31 +126,30 @@ def _bits(each: Unlikeness) -> str:
     return f"{each.divergence:.2f} bits (other likeliest task in {share(each.disagreement)} % of decisions)"
 
 
-def _differences(study: Study, comparisons: Sequence[Comparison]) -> Section:
+def _differences(study: Study) -> Section:
     shown, data = [], []
-    for each in comparisons:
-        difference, shared = each.effect.difference, each.question.arms[0]
+    for each in study.contrasts:
+        difference, shared = each.effect.difference, each.question.reference
+        by_robots = {
+            robots: study.effect({each.arm: 1.0, shared: -1.0}, {robots: 1.0}).difference
+            for robots in _served(study, each.arm)
+        }
+        cells = {robots: wording.number(value.mean, signed=True) for robots, value in by_robots.items()}
         shown.append(
             {
                 "at": each.question.title,
                 "difference": f"{each.arm} − {shared}",
                 TRAINED: wording.estimate(difference, signed=True),
                 "p, adjusted": wording.p_value(each.adjusted),
-                **{
-                    counted(robots, "robot"): wording.number(each.by_robots[robots].mean, signed=True)
-                    if robots in each.by_robots
-                    else wording.DASH
-                    for robots in study.held_out.robots
-                },
+                **{counted(n, "robot"): cells.get(n, wording.DASH) for n in study.design.held_out.robots},
             }
         )
+        label = f"{TRAINED_ROBOTS[0]}-{TRAINED_ROBOTS[-1]}"
+        which = {"question": each.question.name, "arm": each.arm, "reference": shared}
         data += [
-            {"question": each.question.name, "arm": each.arm, "reference": shared, "robots": label,
-             "difference": value.mean, "low": value.low, "high": value.high, "p": p, "adjusted_p": adjusted}
-            for label, value, p, adjusted in (
-                (f"{TRAINED_ROBOTS[0]}-{TRAINED_ROBOTS[-1]}", difference, each.effect.p, each.adjusted),
-                *((str(robots), value, None, None) for robots, value in each.by_robots.items()),
-            )
+            {**which, "robots": label, **difference.columns("difference"), "p": each.effect.p,
+             "adjusted_p": each.adjusted},
+            *({**which, "robots": str(n), **value.columns("difference")} for n, value in by_robots.items()),
         ]  # fmt: skip
     table = Table(
         name="differences",
@@ -169,28 +174,28 @@ def _differences(study: Study, comparisons: Sequence[Comparison]) -> Section:
 
 def _by_robots(study: Study) -> Section:
     shown, data = [], []
-    for name in (*study.arms, "nearest"):
-        robots_of = study.arms[name].robots if name in study.arms else study.held_out.robots
-        means = {
-            robots: study.mean(name, [robots]) if name in study.arms else study.nearest(robots) for robots in robots_of
-        }
+    for name in (*study.design.arms, "nearest"):
+        means = (
+            {robots: study.mean(name, [robots]) for robots in _served(study, name)}
+            if name in study.design.arms
+            else {robots: nearest(study, robots) for robots in study.design.held_out.robots}
+        )
         shown.append(
             {
                 "": name,
                 **{
                     counted(robots, "robot"): wording.percentage(means[robots]) if robots in means else "no network"
-                    for robots in study.held_out.robots
+                    for robots in study.design.held_out.robots
                 },
             }
         )
         data += [
-            {"arm": name, "robots": robots, "trained": robots in TRAINED_ROBOTS, "percent": value.mean,
-             "low": value.low, "high": value.high}
+            {"arm": name, "robots": robots, "trained": robots in TRAINED_ROBOTS, **value.columns("percent")}
             for robots, value in means.items()
-        ]  # fmt: skip
+        ]
     caption = (
-        f"Tasks completed in time, mean %, on {study.held_out.count} held-out scenarios for each number of robots; "
-        f"{TRAINED} were trained on. {INTERVALS} Nearest: the nearest feasible task, whose intervals come from "
+        f"Tasks completed in time, mean %, on {study.design.held_out.count} held-out scenarios for each number of "
+        f"robots; {TRAINED} were trained on. {INTERVALS} Nearest: the nearest feasible task, whose intervals come from "
         "scenarios alone."
     )
     frame = pd.DataFrame(data)
@@ -199,6 +204,12 @@ def _by_robots(study: Study) -> Section:
         pictures=(Picture(name="by_robots", caption=caption, figure=draw_by_robots(study, frame), data=frame),),
         tables=(Table(name="completion", caption=caption, shown=pd.DataFrame(shown), data=frame),),
     )
+
+
+def nearest(study: Study, robots: int) -> Estimate:
+    """% completed by the nearest-feasible rule, with an interval that knows of scenarios."""
+    solver, scenarios = make_solver("nearest"), study.design.held_out.scenarios("taptc", robots)
+    return estimate_mean([100 * verify(each, solver.solve(each)).completed / each.num_tasks for each in scenarios], 0)
 
 
 def _choices(choices: Sequence[Unlikeness]) -> Section:
@@ -224,20 +235,13 @@ def _choices(choices: Sequence[Unlikeness]) -> Section:
         shown=pd.DataFrame(shown),
         data=pd.DataFrame(
             [
-                {
-                    "arm": each.arm,
-                    "compared": each.pairs,
-                    "pairs": each.count,
-                    "decisions": each.decisions,
-                    "divergence_bits": each.divergence,
-                    "least": each.least,
-                    "most": each.most,
-                    "disagreement": each.disagreement,
-                }
+                {"arm": each.arm, "compared": each.pairs, "pairs": each.count, "decisions": each.decisions,
+                 "divergence_bits": each.divergence, "least": each.least, "most": each.most,
+                 "disagreement": each.disagreement}
                 for each in choices
             ]
         ),
-    )
+    )  # fmt: skip
     text = (
         "Whether independent robots have found roles of their own shows in this: if two robots trained together differ "
         "no more than one robot does from itself when trained with another seed, what sets them apart is chance.",
@@ -245,37 +249,27 @@ def _choices(choices: Sequence[Unlikeness]) -> Section:
     return Section(title="How differently they choose", text=text, tables=(table,))
 
 
-def _costs(study: Study, sessions: Sequence[Session]) -> Section:
+def _costs(study: Study) -> Section:
     shown, data = [], []
-    for name, arm in study.arms.items():
-        line = {
-            "arm": name,
-            "networks": arm.networks,
-            "parameters": study.parameters(name),
-            "scenarios_an_update": arm.config.scenarios,
-            "episodes": arm.episodes,
-            "decisions_a_network": study.decisions(name),
-            "seconds": study.seconds(name),
-        }
-        data.append(line)
+    for name, arm in study.design.arms.items():
+        parameters, decisions, seconds = study.parameters(name), decisions_of(study, name), study.seconds(name)
+        data.append(
+            {"arm": name, "networks": arm.networks, "parameters": parameters,
+             "scenarios_an_update": arm.config.scenarios, "episodes": arm.episodes, "decisions_a_network": decisions,
+             "seconds": seconds}
+        )  # fmt: skip
         shown.append(
-            {
-                "": name,
-                "networks": str(arm.networks),
-                "parameters": f"{line['parameters']:,}",
-                "scenarios an update": str(arm.config.scenarios),
-                "episodes": f"{arm.episodes:,}",
-                "decisions a network": f"{line['decisions_a_network']:,.0f}",
-                "seconds a run": f"{line['seconds']:,.0f}",
-            }
-        )
+            {"": name, "networks": str(arm.networks), "parameters": f"{parameters:,}",
+             "scenarios an update": str(arm.config.scenarios), "episodes": f"{arm.episodes:,}",
+             "decisions a network": f"{decisions:,.0f}", "seconds a run": f"{seconds:,.0f}"}
+        )  # fmt: skip
+    busy = ", on a machine that was busy with other work" if any(machine.busy for machine in study.machines) else ""
     table = Table(
         name="costs",
         caption=(
             "Parameters of all networks together; decisions that each network learned from, mean over networks, "
             "reckoned from the tasks that missions of the finished policy complete; wall-clock time of a run, mean "
-            "over runs, one CPU thread each"
-            + (", on a machine that was busy with other work." if any(session.busy for session in sessions) else ".")
+            f"over runs, one CPU thread each{busy}."
         ),
         shown=pd.DataFrame(shown),
         data=pd.DataFrame(data),
@@ -283,18 +277,25 @@ def _costs(study: Study, sessions: Sequence[Session]) -> Section:
     return Section(title="What it costs", tables=(table,))
 
 
+def decisions_of(study: Study, name: str) -> float:
+    """About how many decisions each network of an arm learned from, mean over its networks.
+
+    Under the mask rule "feasible" a decision is a completed task, so that a mission has as many as it completes.
+    """
+    arm = study.design.arms[name]
+    percent = float(np.mean([study.mean(name, [robots]).mean for robots in TRAINED_ROBOTS]))
+    a_mission = study.design.budget.tasks * percent / 100
+    return arm.episodes * a_mission / arm.networks
+
+
 def _curves(study: Study) -> Section:
     data = curves_data(study)
     caption = (
         "Greedy completion on each run’s own validation scenarios, which runs of equal seeds share. Thin: runs; bold: "
-        f"the mean over {counted(study.seeds, 'run')}; bands: Student’s {100 * LEVEL:.0f} % interval of that "
+        f"the mean over {counted(study.design.seeds, 'run')}; bands: Student’s {100 * LEVEL:.0f} % interval of that "
         "mean, other validation scenarios for other seeds included. At equal episodes: against the episodes sampled; "
         "at equal decisions a network: against the episodes sampled over the number of networks that share their "
         "decisions."
     )
     picture = Picture(name="learning_curves", caption=caption, figure=draw_curves(study, data), data=data)
     return Section(title="Learning curves", pictures=(picture,))
-
-
-def _equals(p: str) -> str:
-    return p if p.startswith("<") else f"= {p}"

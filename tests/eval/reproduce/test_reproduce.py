@@ -13,11 +13,11 @@ import pandas as pd
 import pytest
 
 from mrta_zoo.cli.main import main
-from mrta_zoo.cli.reproduce import reference_of, usual_methods
 from mrta_zoo.eval.report.figure_style import new_figure, style_of
 from mrta_zoo.eval.report.files import write_report
 from mrta_zoo.eval.report.parts import Picture, Report, Section, Table
 from mrta_zoo.eval.reproduce import paper
+from mrta_zoo.eval.reproduce.methods import reference_of, usual_methods
 from mrta_zoo.policies.registry import method_names
 
 METHODS = "random,nearest,capam"
@@ -151,21 +151,11 @@ def test_resuming_gives_the_same(cases: Path, run: Path, tmp_path: Path, capsys:
     assert {name: (out / name).read_bytes() for name in before} == before
 
 
-@pytest.mark.parametrize(
-    ("change", "sentence"),
-    [
-        (["--seed", "5"], "seed was 0, now it is 5"),
-        (["--budget", "1"], "budget was not given, now it is 1.0"),
-        (["--methods", "nearest"], "methods was random,nearest,capam, now it is nearest"),
-    ],
-)
-def test_another_command_is_refused(
-    cases: Path, run: Path, change: list[str], sentence: str, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_another_command_is_refused(cases: Path, run: Path, capsys: pytest.CaptureFixture[str]) -> None:
     before = (run / "rows.csv").read_bytes()
-    assert main(arguments(cases, run, *change)) == 2
+    assert main(arguments(cases, run, "--budget", "1")) == 2
     error = capsys.readouterr().err
-    assert sentence in error
+    assert "budget was not given, now it is 1.0" in error
     assert error.count("\n") == 1
     assert (run / "rows.csv").read_bytes() == before
 

@@ -6,15 +6,15 @@ from collections.abc import Mapping, Sequence
 
 import pytest
 
-from mrta_zoo.cli import reproduce as command
 from mrta_zoo.cli.main import main
-from mrta_zoo.eval.machine import Session
+from mrta_zoo.eval.machine import Machine
+from mrta_zoo.eval.reproduce import experiment
 from mrta_zoo.eval.reproduce.all_pairs import all_pairs_table, compare_all
-from mrta_zoo.eval.reproduce.comparison import compare
 from mrta_zoo.eval.reproduce.moments import moments_section
 from mrta_zoo.eval.reproduce.optimality import optimality_section
+from mrta_zoo.eval.reproduce.paired_tests import compare
+from mrta_zoo.eval.reproduce.results import OptimalityRow, Results, frame_of
 from mrta_zoo.eval.reproduce.share import share_section
-from mrta_zoo.eval.reproduce.study import OptimalityRow, Study, frame_of
 from mrta_zoo.eval.reproduce.summary import summary
 from mrta_zoo.eval.reproduce.timing import times_of, timing_section
 from mrta_zoo.eval.rows import Row
@@ -23,7 +23,7 @@ from mrta_zoo.suite import small_suite
 Completed = Mapping[str, Sequence[int]]
 
 
-def study(completed: Completed, robots: Sequence[int] = (2,) * 8, **more: object) -> Study:
+def results(completed: Completed, robots: Sequence[int] = (2,) * 8, **more: object) -> Results:
     """Cases with 100 tasks, in which each method completed so many; each took 2 ms a task completed, at least 2 ms."""
     rows = [
         Row(f"c{index}", method, 100, robots[index], value, value / 100, 0.0, 0.0, 0.0, 0.002 * max(value, 1))
@@ -33,21 +33,21 @@ def study(completed: Completed, robots: Sequence[int] = (2,) * 8, **more: object
     methods = list(completed)
     cases = [f"c{index}" for index in range(len(robots))]
     fields = {"against": methods[0], **more}
-    return Study(frame=frame_of(rows, cases, methods), methods=tuple(methods), seed=0, **fields)  # type: ignore[arg-type]
+    return Results(frame=frame_of(rows, cases, methods), methods=tuple(methods), seed=0, **fields)  # type: ignore[arg-type]
 
 
-def small_study(rows: Sequence[tuple[str, str, int, int | None]]) -> Study:
+def small_results(rows: Sequence[tuple[str, str, int, int | None]]) -> Results:
     """Small scenarios of 5 tasks: case, method, tasks completed, and bound."""
     made = [
         OptimalityRow(case, method, 5, 1, done, done / 5, 0, 0, 0, 0.1, bound) for case, method, done, bound in rows
     ]
     frame = frame_of(made, [f"s{index}" for index in range(6)], ["exact", "nearest"])
-    return study({"nearest": [50] * 8}, small=frame)
+    return results({"nearest": [50] * 8}, small=frame)
 
 
 def test_verdicts() -> None:
     found = compare(
-        study(
+        results(
             {
                 "capam": [40, 50, 60, 42, 53, 64, 45, 56],
                 "worse": [30, 41, 49, 33, 42, 55, 34, 47],
@@ -76,9 +76,9 @@ def test_verdicts() -> None:
 def test_the_summary_says_who_is_better_and_where_not() -> None:
     capam = [40, 41, 42, 43, 44, 45, 46, 47, 80, 82, 84, 86, 88, 90, 92, 94]
     other = [42, 43, 43, 45, 47, 47, 48, 49, 60, 63, 64, 65, 69, 70, 70, 75]
-    made = study({"capam": capam, "other": other, "same": capam}, [2] * 8 + [7] * 8)
+    made = results({"capam": capam, "other": other, "same": capam}, [2] * 8 + [7] * 8)
     pairs = {100: compare_all(made, 100)}
-    quiet = Session("now", "a processor", 2, 1, "Linux", "Python 3", 0.1)
+    quiet = Machine("now", "a processor", 2, 1, "Linux", "Python 3", 0.1)
     points = summary(made, compare(made), pairs, [quiet])
     # capam (348 + 696) / 16 = 65.25, other (364 + 536) / 16 = 56.25; difference 9.
     assert points[0].endswith("mean: capam 65.2 %, same 65.2 %, other 56.2 %.")
@@ -88,7 +88,7 @@ def test_the_summary_says_who_is_better_and_where_not() -> None:
     # With 2 robots 42 - 40 and so on: -(2 + 2 + 1 + 2 + 3 + 2 + 2 + 2) / 8 = -2.
     assert "against other, significantly fewer with 2 robots (by 2.0)" in points[3]
     assert not any("Beware" in point for point in points)
-    busy = Session("now", "a processor", 2, 1, "Linux", "Python 3", 3.5)
+    busy = Machine("now", "a processor", 2, 1, "Linux", "Python 3", 3.5)
     assert "Beware: the machine was busy" in summary(made, compare(made), pairs, [busy])[-1]
     table = all_pairs_table(made, 100, pairs[100])
     assert table.shown["other"].tolist() == ["+9.00", "–", "+9.00"]
@@ -97,12 +97,12 @@ def test_the_summary_says_who_is_better_and_where_not() -> None:
 
 
 def test_time_for_a_mission_and_for_a_decision() -> None:
-    made = study({"capam": [40] * 4 + [60] * 4, "none": [0] * 8})
+    made = results({"capam": [40] * 4 + [60] * 4, "none": [0] * 8})
     first, second = times_of(made).to_dict("records")
     # 2 ms a task: 80 ms for 40 tasks and 120 ms for 60, 100 ms in the mean; 2 ms a decision.
     assert (first["mean"], first["fastest"], first["slowest"]) == pytest.approx((0.1, 0.08, 0.12))
     assert first["per_decision"] == pytest.approx(0.002)
-    shown = timing_section(study({"capam": [40, 60], "none": [0, 0]}, [2, 2]), []).tables[0].shown
+    shown = timing_section(results({"capam": [40, 60], "none": [0, 0]}, [2, 2]), []).tables[0].shown
     assert shown.iloc[0].tolist() == ["capam", "100 ms", "2 ms", "85 ms"]
     assert shown.iloc[1].tolist()[2] == "–"
     assert second["fastest"] == 0.002
@@ -110,7 +110,7 @@ def test_time_for_a_mission_and_for_a_decision() -> None:
 
 def test_share_of_the_reference_where_there_is_one() -> None:
     cases = {"capam": [40, 45, 30, 60, 0, 20, 50, 50], "other": [50, 30, 30, 30, 0, 25, 40, 50]}
-    section = share_section(study(cases, best_known={"c0": 80, "c1": 40}))
+    section = share_section(results(cases, best_known={"c0": 80, "c1": 40}))
     data = section.tables[0].data.set_index("method")
     # c0 40/80 = 50 %, c1 45/40 = 112.5 %; others by the better of the two: 100, 100, 80, 100, 100; c4 nobody. / 7
     assert data.loc["capam", "mean_share"] == pytest.approx((50 + 112.5 + 100 + 100 + 80 + 100 + 100) / 7)
@@ -120,25 +120,25 @@ def test_share_of_the_reference_where_there_is_one() -> None:
     assert "best in reference.csv for 2 cases, and for the other 6 the best plan that any method of this report" in text
     assert "In 1 case a method run here completed more tasks than the reference table knows of" in text
     assert "1 case in which nobody completed any task are left out" in text
-    whole = share_section(study({"capam": [40] * 8}, best_known={f"c{index}": 80 for index in range(8)}))
+    whole = share_section(results({"capam": [40] * 8}, best_known={f"c{index}": 80 for index in range(8)}))
     assert whole.text == ("Best known is the best in the reference.csv that comes with the cases, for every case.",)
 
 
 def test_the_papers_table_stands_beside_ours() -> None:
-    section = moments_section(study({"capam": [30, 32, 34, 36, 38, 40]}, [2] * 6))
+    section = moments_section(results({"capam": [30, 32, 34, 36, 38, 40]}, [2] * 6))
     (line,) = section.tables[0].shown.to_dict("records")
     assert line["capam"].startswith("35.0 [")
     assert (line["paper: CapAM, P = 3"], line["paper: AM-RL"]) == ("34.6", "22.7")
     assert "no like-for-like comparison" in " ".join(section.text)
     assert "capam-p2 (CapAM, P = 2), capam-p1 (CapAM, P = 1) and am (AM-RL)" in section.text[0]
-    assert moments_section(study({"edf": [30] * 6}, [2] * 6)).tables == ()
+    assert moments_section(results({"edf": [30] * 6}, [2] * 6)).tables == ()
 
 
 def test_the_gap_counts_where_the_optimum_is_proved() -> None:
     exact = [("s0", 4, 4), ("s1", 5, 5), ("s2", 4, 4), ("s3", 3, 3), ("s4", 2, 2), ("s5", 3, 5)]
     nearest = [("s0", 4), ("s1", 4), ("s2", 3), ("s3", 3), ("s4", 1), ("s5", 3)]
     section = optimality_section(
-        small_study([(c, "exact", d, b) for c, d, b in exact] + [(c, "nearest", d, None) for c, d in nearest])
+        small_results([(c, "exact", d, b) for c, d, b in exact] + [(c, "nearest", d, None) for c, d in nearest])
     )
     data = section.tables[0].data.set_index("method")
     # s5 is not proved (3 < 5). Gaps 0/4, 1/5, 1/4, 0/3, 1/2 = 0, 20, 25, 0, 50 %: mean 19 %; 2 of 5 optimal.
@@ -151,12 +151,12 @@ def test_the_gap_counts_where_the_optimum_is_proved() -> None:
 
 def test_beating_the_optimum_is_an_error_said_aloud() -> None:
     rows = [("s0", "exact", 4, 4.0), ("s0", "nearest", 5, None), ("s1", "exact", 3, 4.0), ("s1", "nearest", 4, None)]
-    text = optimality_section(small_study(rows)).text[1]
+    text = optimality_section(small_results(rows)).text[1]
     assert text.startswith("ERROR: 1 plan completed more tasks than exact proved possible (nearest on s0)")
 
 
 def test_without_an_exact_solver_the_section_says_what_is_missing() -> None:
-    section = optimality_section(study({"nearest": [50] * 8}, absent={"exact": "this version has no method exact"}))
+    section = optimality_section(results({"nearest": [50] * 8}, absent={"exact": "this version has no method exact"}))
     assert section.text == ("Not measured, because this version has no method exact.",)
 
 
@@ -165,7 +165,7 @@ def test_the_command_runs_the_small_scenarios_where_it_can(
 ) -> None:
     folder = tmp_path_factory.mktemp("exact")
     few = [scenario for scenario in small_suite() if scenario.num_robots == 1 and scenario.num_tasks == 5]
-    monkeypatch.setattr(command, "small_suite", lambda: few)
+    monkeypatch.setattr(experiment, "small_suite", lambda: few)
     assert main(["generate", "--count", "2", "--tasks", "6", "--robots", "1", "--out", str(folder / "cases")]) == 0
     flags = ["--cases", str(folder / "cases"), "--methods", "nearest,edf", "--out", str(folder / "out")]
     assert main(["reproduce", *flags]) == 0

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import csv
 import shlex
+import shutil
 import signal
 import subprocess
 import sys
 import time
-from dataclasses import asdict, fields
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,10 +18,9 @@ from command_line import changed
 
 from mrta_zoo.cli.main import main
 from mrta_zoo.eval.plot_history import LearningCurve
-from mrta_zoo.eval.studies.ablation.questions import QUESTIONS, needed
-from mrta_zoo.eval.studies.ablation.variants import CAPAM, REFERENCE, ROBOTS, Budget, all_variants
-from mrta_zoo.eval.studies.hardly import hardly_trained, warning
+from mrta_zoo.eval.studies.ablation.design import CAPAM, QUESTIONS, REFERENCE, ROBOTS, USUAL, ablation, all_arms
 from mrta_zoo.eval.studies.held_out import HeldOut
+from mrta_zoo.eval.studies.report import hardly_trained, warning
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.scenarios import draw
@@ -37,7 +37,7 @@ def differences(one: TrainConfig, other: TrainConfig) -> set[str]:
 
 
 def test_variants_differ_in_one_thing_from_what_they_are_compared_with() -> None:
-    variants = all_variants(Budget())
+    variants = all_arms(USUAL, 600)
     allowed = {
         "encoder": {"encoder"}, "moments": {"moments"}, "plus-encoder": {"encoder"}, "baseline": {"baseline"},
         "decoder": {"decoder", "decision_layers"}, "mask-rule": {"mask_rule"}, "distribution": {"generator"},
@@ -50,16 +50,18 @@ def test_variants_differ_in_one_thing_from_what_they_are_compared_with() -> None
             assert len(found - extra) == 1, name
     assert variants[CAPAM].config.network.decoder == "attention"
     assert variants[REFERENCE].config.network.decoder == "candidates"
-    assert set(needed(list(QUESTIONS.values()))) == set(variants)
-    assert needed(list(QUESTIONS.values()))[REFERENCE] == ("taptc", "uniform")
+    design = ablation(list(QUESTIONS), 2, USUAL, 600, 2)
+    assert set(design.arms) == set(variants)
+    runs = {(run.variant, run.config.seed): run.distributions for run in design.runs(Path("out"))}
+    assert len(runs) == 2 * len(variants)
+    assert (runs[REFERENCE, 1], runs[CAPAM, 0]) == (("taptc", "uniform"), ("taptc",))
 
 
 def test_every_field_of_the_budget_is_a_setting() -> None:
-    budget = Budget(updates=7, paper_updates=9, scenarios=3, samples=4, tasks=11)
-    config = all_variants(budget)[CAPAM].config
+    arms = all_arms(replace(USUAL, updates=7, scenarios=3, samples=4, tasks=11), paper_updates=9)
+    config = arms[CAPAM].config
     assert (config.updates, config.scenarios, config.samples, config.tasks) == (9, 3, 4, (11,))
-    assert all_variants(budget)["paper-decoder"].config.updates == all_variants(budget)[REFERENCE].config.updates == 7
-    assert {field.name for field in fields(Budget)} >= {"updates", "paper_updates", "scenarios", "samples", "tasks"}
+    assert arms["paper-decoder"].config.updates == arms[REFERENCE].config.updates == 7
 
 
 def test_held_out_scenarios_are_none_of_those_trained_on() -> None:
@@ -67,7 +69,7 @@ def test_held_out_scenarios_are_none_of_those_trained_on() -> None:
     assert [each.name for each in many] == [f"taptc-a2-{index:03d}" for index in range(4)]
     for one, other in zip(few, many, strict=False):
         assert np.array_equal(one.task_xy, other.task_xy)
-    config = all_variants(Budget(tasks=6))[CAPAM].config
+    config = all_arms(replace(USUAL, tasks=6), 600)[CAPAM].config
     seen = {
         xy.tobytes()
         for update in range(50)
@@ -138,13 +140,13 @@ def test_killed_and_resumed_in_processes_it_gives_the_same_rows(straight: Path, 
     )
     try:
         until = time.monotonic() + 180
-        while not list(out.glob("runs/*/rows.csv")) and time.monotonic() < until:
+        while not (out / "rows.csv").exists() and time.monotonic() < until:
             time.sleep(0.01)
     finally:
         process.kill()
     assert process.wait() == -signal.SIGKILL
-    done = len(list(out.glob("runs/*/rows.csv")))
-    assert 1 <= done < 6
+    done = (out / "rows.csv").read_text().count("\n") - 1
+    assert 1 <= done < 6 * 3 * 2  # of 6 runs with 3 numbers of robots and 2 scenarios
     time.sleep(0.5)  # its processes end with it
     # A run that a kill has left before its first checkpoint, and one before its configuration.
     (out / "runs" / "capam-p1-seed1" / "checkpoints").mkdir(parents=True, exist_ok=True)
@@ -164,16 +166,6 @@ def fails(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     assert error.startswith("error: ")
     assert error.count("\n") == 1
     return error
-
-
-def test_another_study_in_the_same_folder_is_refused(straight: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    rows = (straight / "rows.csv").read_bytes()
-    assert "updates was 2, now it is 3" in fails(capsys, "--out", str(straight), *changed(TINY, "--updates", "3"))
-    assert "seeds was 2, now it is 1" in fails(capsys, "--out", str(straight), *changed(TINY, "--seeds", "1"))
-    assert "only was encoder,moments, now it is moments" in fails(
-        capsys, "--out", str(straight), *changed(TINY, "--only", "moments")
-    )
-    assert (straight / "rows.csv").read_bytes() == rows
 
 
 @pytest.mark.parametrize(
@@ -196,20 +188,26 @@ def test_a_failure_in_a_process_is_said_in_a_sentence(tmp_path: Path, capsys: py
     out = tmp_path / "out"
     arguments = ["--out", str(out), *changed(TINY, "--only", "moments", "--seeds", "1"), "--workers"]
     assert main(["ablate", *arguments, "1"]) == 0
-    damaged = out / "runs" / "capam-seed0"
-    (damaged / "rows.csv").unlink()
-    (damaged / "checkpoints" / "00000004" / "network.safetensors").write_bytes(b"garbage")
+    rows, damaged = out / "rows.csv", out / "runs" / "capam-seed0"
+    whole = rows.read_text()
+    network = damaged / "checkpoints" / "00000004" / "network.safetensors"
+    rows.write_text("".join(line for line in whole.splitlines(keepends=True) if not line.startswith("capam,")))
+    network.write_bytes(b"garbage")
     assert "network.safetensors: not a readable safetensors file" in fails(capsys, *arguments, "2")
-    (damaged / "rows.csv").write_text("variant\n")
+    rows.write_text("variant\n")
     assert "line 1: the columns are ['variant']" in fails(capsys, *arguments, "1")
-    whole = (out / "runs" / "capam-p1-seed0" / "rows.csv").read_text().splitlines(keepends=True)
-    (damaged / "rows.csv").write_text("".join(whole).replace("capam-p1", "capam").replace(",6\n", ",0\n"))
-    assert "of 0 tasks completed; expected 0 to 6 of 6; delete the file" in fails(capsys, *arguments, "1")
-    (damaged / "rows.csv").write_text("".join(whole).replace("capam-p1", "capam"))
-    (out / "runs" / "capam-p1-seed0" / "rows.csv").write_text("".join(whole[:-1]))
-    assert "capam-p1-seed0/rows.csv holds other rows than its run has" in fails(capsys, *arguments, "1")
-    (out / "runs" / "capam-p1-seed0" / "rows.csv").write_text("".join(whole))
-    (damaged / "rows.csv").unlink()
+    first = whole.splitlines()[1]
+    for change, sentence in (
+        (",7,6", "line 2: completed is 7; expected 0 to 6, the number of tasks"),
+        (",0,5", "has a row for variant capam, seed 0, distribution taptc, robots 1, scenario 0, tasks 5, which this"),
+    ):
+        rows.write_text(whole.replace(first, first.rsplit(",", 2)[0] + change))
+        assert sentence in fails(capsys, *arguments, "1")
+    rows.write_text(whole)
     (damaged / "policy.safetensors").unlink()
-    (damaged / "checkpoints" / "00000004" / "network.safetensors").unlink()
+    rows.write_text(whole.replace(first + "\n", ""))  # a run whose rows are not whole is compared again
+    network.unlink()
     assert f"to have this run done again, delete {damaged} and repeat" in fails(capsys, *arguments, "1")
+    shutil.rmtree(damaged)
+    assert main(["ablate", *arguments, "1"]) == 0
+    assert rows.read_text() == whole

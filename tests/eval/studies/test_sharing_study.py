@@ -16,8 +16,8 @@ from command_line import changed
 from scipy import stats
 
 from mrta_zoo.cli.main import main
-from mrta_zoo.eval.studies.sharing.arms import MOST, QUESTIONS, TRAINED_ROBOTS, Budget, all_arms, needed
 from mrta_zoo.eval.studies.sharing.choices import Questionnaire, compared, divergence, members
+from mrta_zoo.eval.studies.sharing.design import MOST, QUESTIONS, TRAINED_ROBOTS, USUAL, all_arms, sharing
 from mrta_zoo.eval.studies.sharing.figures import band
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
@@ -32,7 +32,7 @@ def lines(file: Path) -> list[dict[str, str]]:
 
 
 def test_ways_of_sharing_differ_in_nothing_else() -> None:
-    arms = all_arms(Budget(scenarios=12))
+    arms = all_arms(USUAL)
     assert {name: arm.config.scenarios for name, arm in arms.items()} == {
         "shared": 12, "by-capacity": 12, "independent": 12,
         # 12 / 4 for one network; 12 * 2/4 for two.
@@ -44,8 +44,13 @@ def test_ways_of_sharing_differ_in_nothing_else() -> None:
     # Episodes a network are equal where decisions are to be, and episodes where they are to be.
     for question, measure in (("episodes", lambda arm: arm.episodes), ("decisions", lambda a: a.episodes / a.networks)):
         assert len({measure(arms[name]) for name in QUESTIONS[question].arms}) == 1
-    assert set(needed([QUESTIONS["decisions"]], Budget())) == {"independent", "shared-fewer", "by-capacity-fewer"}
-    assert arms["independent"].networks == MOST == TRAINED_ROBOTS[-1]
+    design = sharing(["decisions"], 1, USUAL, 2)
+    assert list(design.arms) == ["shared-fewer", "by-capacity-fewer", "independent"]
+    assert [arm.networks for arm in design.arms.values()] == [1, 2, MOST]
+    assert TRAINED_ROBOTS[-1] == MOST
+    runs = {run.variant: run.held_out.robots for run in design.runs(Path("out"))}
+    assert list(runs) == ["independent", "by-capacity-fewer", "shared-fewer"]  # what takes longest first
+    assert (runs["independent"], runs["shared-fewer"]) == ((1, 2, 3, 4), (1, 2, 3, 4, 6, 8))
 
 
 def test_divergence_by_hand() -> None:
@@ -127,8 +132,9 @@ def test_the_study_leaves_rows_report_and_pictures(study: Path) -> None:
 def test_interrupted_and_resumed_it_gives_the_same(study: Path, tmp_path: Path) -> None:
     out = tmp_path / "interrupted"
     shutil.copytree(study, out, ignore=shutil.ignore_patterns(".lock"))
-    (out / "runs" / "shared-seed0" / "rows.csv").unlink()  # trained, not yet compared
-    shutil.rmtree(out / "runs" / "independent-seed1")  # not begun
+    rows = (out / "rows.csv").read_text().splitlines(keepends=True)
+    (out / "rows.csv").write_text("".join(row for row in rows if not row.startswith("shared,0")))  # not yet compared
+    shutil.rmtree(out / "runs" / "independent-seed1")  # lost
     assert main(["sharing", "--out", str(out), *TINY]) == 0
     for name in ("rows.csv", "differences.csv", "completion.csv", "choices.csv", "learning_curves.csv"):
         assert (out / name).read_bytes() == (study / name).read_bytes()

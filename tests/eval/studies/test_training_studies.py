@@ -8,8 +8,8 @@ import pytest
 from command_line import Captured, fails
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.studies.sharing.arms import QUESTIONS
-from mrta_zoo.eval.studies.study import choose
+from mrta_zoo.eval.studies.design import choose
+from mrta_zoo.eval.studies.sharing.design import QUESTIONS
 
 BOTH = ("ablate", "sharing")
 

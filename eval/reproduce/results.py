@@ -45,7 +45,7 @@ class Group:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Study:
+class Results:
     """Rows of all methods on all cases.
 
     Attributes:
