@@ -15,7 +15,7 @@ from torch import Tensor
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
-from mrta_zoo.rules import MaskRule, check_mask_rule, finish_time, may_choose, task_cost, travel_time
+from mrta_zoo.rules import MaskRule, check_mask_rule, may_choose, next_event, task_cost, travel_time, visit
 from mrta_zoo.scales import Scales
 from mrta_zoo.scenario import ARRAYS, QUANTITIES, Scenario
 from mrta_zoo.wording import counted
@@ -180,7 +180,7 @@ class BatchMission:
         travel = travel_time(offset[..., 0], offset[..., 1], s.speed[..., None], _sqrt)
         work = s.workload[:, None] / s.capacity[..., None]
         ready = self.ready[..., None]
-        self.finish_if = finish_time(ready, travel, work)
+        self.finish_if = visit(ready, travel, work).finishes
         self._allowed = may_choose(mask_rule, self.finish_if, ready, s.deadline[:, None])
         self._rows = torch.arange(b, device=device)
         self._advance()
@@ -222,7 +222,7 @@ class BatchMission:
         speed = s.speed[rows, robot][:, None]
         work = s.workload / s.capacity[rows, robot][:, None]
         travel = travel_time(offset[..., 0], offset[..., 1], speed, _sqrt)
-        finish_if = finish_time(ready[:, None], travel, work)
+        finish_if = visit(ready[:, None], travel, work).finishes
         self.finish_if[rows, robot] = finish_if
         self._allowed[rows, robot] = may_choose(self.mask_rule, finish_if, ready[:, None], s.deadline)
         self._advance()
@@ -248,7 +248,7 @@ class BatchMission:
     def cost(self) -> Tensor:
         """(B,) float64, the objective (Eq. 1 of the paper); final where the mission is done."""
         s = self.scenarios
-        terms = task_cost(self.taken_by >= 0, self.finish, s.deadline, self.time[:, None], torch.where, torch.maximum)
+        terms = task_cost(self.finish, s.deadline, self.time[:, None], torch.where, torch.maximum)
         return torch.where(s.task_exists, terms, 0.0).sum(1)
 
     def completed(self) -> Tensor:
@@ -272,8 +272,7 @@ class BatchMission:
         choice = (self._allowed & self.untaken[:, None]).any(2)
         alive = ~self.retired
         # Whoever becomes free next with a choice acts; whoever becomes free before that without one retires.
-        ready_or_inf = self.ready.masked_fill(~(alive & choice), torch.inf)
-        when, actor = ready_or_inf.min(1)  # ties: the lowest index, checked by the property tests
+        when, actor = next_event(self.ready, alive & choice, torch.where, _least)
         over = torch.isinf(when)
         index = torch.arange(self.ready.shape[1], device=self.ready.device)
         before = (self.ready < when[:, None]) | ((self.ready == when[:, None]) & (index < actor[:, None]))
@@ -289,3 +288,8 @@ def _sqrt(square: Tensor) -> Tensor:
     On the CPU `torch.sqrt` is one bit off in about 1 % of values, enough to tip a tie with a deadline.
     """
     return torch.from_numpy(np.sqrt(square.numpy())) if square.device.type == "cpu" else torch.sqrt(square)
+
+
+def _least(times: Tensor) -> tuple[Tensor, Tensor]:
+    least, first = times.min(1)  # ties: the lowest index, checked by the property tests
+    return least, first

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from mrta_zoo.plan import Plan
-from mrta_zoo.scales import in_time
+from mrta_zoo.reach import in_time
 from mrta_zoo.scenario import Scenario
 
 Reason = Literal["out of reach", "others were worth more"]

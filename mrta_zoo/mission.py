@@ -14,14 +14,16 @@ from mrta_zoo.rules import (
     MaskRule,
     Status,
     check_mask_rule,
-    finish_time,
     may_choose,
+    next_event,
     task_cost,
     travel_time,
+    visit,
 )
 from mrta_zoo.scenario import FloatArray, Scenario
 
 BoolArray = npt.NDArray[np.bool_]
+ReasonArray = npt.NDArray[np.int8]
 
 # As plain integers, which are faster to look up and compare than members of an enumeration.
 _ACTIVE, _ASSIGNED, _COMPLETED, _MISSED = (int(status) for status in Status)
@@ -57,9 +59,11 @@ class Mission:
         heading: for each robot the task it is on, or -1 if it has none under way.
         retired: for each robot whether it was free and found nothing left to choose, or stayed.
         taken_by: (N,) the robot that took each task, or -1.
-        finish: (N,) when each taken task is finished; NaN for the others.
+        finish: (N,) when each taken task is finished; infinite for the others.
         status: (N,) int8 `rules.Status` of each task at `time`.
         finish_if: (M, N) when each robot would finish each task, were it its next.
+        reasons: (M, N) int8 `rules.MaskReason`: why each robot may not choose each task when it is next free, or that
+            it may, as far as is known now.
     """
 
     def __init__(self, scenario: Scenario, mask_rule: MaskRule = "feasible") -> None:
@@ -75,11 +79,10 @@ class Mission:
         self.heading = [-1] * m
         self.retired = [False] * m
         self.taken_by = np.full(n, -1, dtype=np.int64)
-        self.finish: FloatArray = np.full(n, np.nan)
+        self.finish: FloatArray = np.full(n, np.inf)
         self.status = np.full(n, _ACTIVE, dtype=np.int8)
         self.finish_if: FloatArray = np.empty((m, n))
-        self._untaken: BoolArray = np.ones(n, dtype=np.bool_)
-        self._allowed: BoolArray = np.empty((m, n), dtype=np.bool_)
+        self.reasons: ReasonArray = np.empty((m, n), dtype=np.int8)
         order = np.argsort(scenario.deadline, kind="stable")
         self._by_deadline = list(zip(scenario.deadline[order].tolist(), order.tolist(), strict=True))
         self._passed = 0  # how many of `_by_deadline` lie before the clock
@@ -96,8 +99,12 @@ class Mission:
 
     def mask(self, robot: int) -> BoolArray:
         """(N,) what `robot` may choose when it is next free, as far as is known now."""
-        mask: BoolArray = self._untaken & self._allowed[robot]
+        mask: BoolArray = self.reasons[robot] == _CHOOSABLE
         return mask
+
+    def known(self, robot: int) -> Mission:
+        """The mission as far as `robot` knows it, which is all of it; observations and advice are made from this."""
+        return self
 
     def free(self) -> list[int]:
         """The robots that are free now and have something to choose, in index order.
@@ -109,15 +116,6 @@ class Mission:
             for robot, ready in enumerate(self.ready)
             if ready == self.time and not self.retired[robot] and self.heading[robot] < 0 and self.mask(robot).any()
         ]
-
-    def reasons(self, robot: int) -> npt.NDArray[np.int8]:
-        """(N,) `rules.MaskReason` of each task for `robot`."""
-        deadline = self.scenario.deadline
-        reasons = np.full(len(deadline), _TOO_LATE, dtype=np.int8)
-        reasons[deadline < self.ready[robot]] = _DEADLINE_PASSED
-        reasons[~self._untaken] = _TAKEN
-        reasons[self.mask(robot)] = _CHOOSABLE
-        return reasons
 
     def assign(self, task: int) -> list[Finished]:
         """Let the acting robot take `task` and move the clock on to the next actor.
@@ -156,7 +154,7 @@ class Mission:
         self._check(robot, task)
         place = self.scenario.task_xy[task]
         finish = float(self.finish_if[robot, task])
-        self._untaken[task] = False
+        self.reasons[:, task] = _TAKEN
         self.taken_by[task] = robot
         self.finish[task] = finish
         self.status[task] = _ASSIGNED
@@ -172,22 +170,22 @@ class Mission:
         Returns:
             What was finished on the way, in order of time, then robot.
         """
+        ready, waiting = np.array(self.ready), ~np.array(self.retired)
         while True:
-            waiting = [(ready, robot) for robot, ready in enumerate(self.ready) if not self.retired[robot]]
-            if not waiting:
+            time, robot = next_event(ready, waiting, np.where, _least)
+            if time == np.inf:
                 self.actor = -1
                 break
-            self.time, self.actor = min(waiting)
-            if np.count_nonzero(self.mask(self.actor)):
+            self.time, self.actor = time, robot
+            if np.count_nonzero(self.mask(robot)):
                 break
-            self.retired[self.actor] = True
+            waiting[robot] = False
+            self.retired[robot] = True
         return self._finish_until(self.time)
 
     def cost(self) -> float:
         """The objective so far, Eq. 1 of the paper; final once the mission is `done`."""
-        taken = self.taken_by >= 0
-        deadline = self.scenario.deadline
-        terms = task_cost(taken, self.finish, deadline, self.time, np.where, np.maximum)
+        terms = task_cost(self.finish, self.scenario.deadline, self.time, np.where, np.maximum)
         return float(np.sum(terms))
 
     def completed(self) -> int:
@@ -195,12 +193,14 @@ class Mission:
         return int(np.count_nonzero(self.finish <= self.scenario.deadline))
 
     def _look_ahead(self, robot: int) -> None:
-        scenario = self.scenario
+        scenario, ready = self.scenario, self.ready[robot]
         x, y = self.position[robot]
         travel = travel_time(self._x - x, self._y - y, scenario.speed[robot], np.sqrt)
-        ready = self.ready[robot]
-        self.finish_if[robot] = finish = finish_time(ready, travel, self._work[robot])
-        self._allowed[robot] = may_choose(self.mask_rule, finish, ready, scenario.deadline)
+        finish = visit(ready, travel, self._work[robot]).finishes
+        reasons = np.where(scenario.deadline < ready, _DEADLINE_PASSED, _TOO_LATE)
+        reasons[may_choose(self.mask_rule, finish, ready, scenario.deadline)] = _CHOOSABLE
+        reasons[self.taken_by >= 0] = _TAKEN
+        self.finish_if[robot], self.reasons[robot] = finish, reasons
 
     def _finish_until(self, time: float) -> list[Finished]:
         finished = []
@@ -240,11 +240,16 @@ class Mission:
             raise ActionError(
                 f"robot {name(robot)} chose task {task}; tasks are numbered 0 to {self.scenario.num_tasks - 1}"
             )
-        if not (self._untaken[task] and self._allowed[robot, task]):
-            reason = MaskReason(int(self.reasons(robot)[task])).name.lower().replace("_", " ")
+        if self.reasons[robot, task] != _CHOOSABLE:
+            reason = MaskReason(self.reasons[robot, task]).name.lower().replace("_", " ")
             choices = np.flatnonzero(self.mask(robot)).tolist()
             shown = ", ".join(map(named, choices[:10])) + (", …" if len(choices) > 10 else "")
             raise ActionError(
                 f"robot {name(robot)} may not choose task {named(task)} at time {full(self.time)}: {reason}; "
                 f"its choices are {shown or 'none'}"
             )
+
+
+def _least(times: FloatArray) -> tuple[float, int]:
+    first = int(times.argmin())
+    return float(times[first]), first

@@ -7,19 +7,60 @@ the order written here, so that both give the same bits; `verify` states the rul
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterable
 from enum import IntEnum
-from typing import Any, Literal, get_args
+from typing import Any, Literal, NamedTuple
 
 from mrta_zoo.errors import ConfigError
 
 MaskRule = Literal["feasible", "active", "unvisited"]
-"""Which of the tasks not yet taken a robot may choose:
+"""Which of the tasks not yet taken a robot may choose, see `MASK_RULES`."""
 
-- ``"feasible"``: those that this robot can finish by their deadline (the default);
-- ``"active"``: those whose deadline has not passed;
-- ``"unvisited"``: all of them, even if late (the paper's rule, §II-B).
-"""
+
+class VisitTimes(NamedTuple):
+    """When a robot does a task, in time units: floats, or arrays of one shape.
+
+    Attributes:
+        departs: when it leaves for the task.
+        arrives: when it gets there.
+        starts: when its work begins.
+        finishes: when its work is done.
+    """
+
+    departs: Any
+    arrives: Any
+    starts: Any
+    finishes: Any
+
+
+class MaskFormula(NamedTuple):
+    """A mask rule.
+
+    Attributes:
+        allows: ``allows(finish, ready, deadline)``: whether a robot that is free at `ready` may choose a task that it
+            would finish at `finish`, if nobody has taken it.
+        help: which tasks these are.
+    """
+
+    allows: Callable[[Any, Any, Any], Any]
+    help: str
+
+
+MASK_RULES: dict[MaskRule, MaskFormula] = {
+    "feasible": MaskFormula(
+        lambda finish, ready, deadline: finish <= deadline, "those that this robot can finish by their deadline"
+    ),
+    "active": MaskFormula(
+        lambda finish, ready, deadline: (ready <= deadline) & (finish == finish),  # which only broadcasts to (..., N)
+        "those whose deadline has not passed",
+    ),
+    "unvisited": MaskFormula(
+        lambda finish, ready, deadline: finish == finish, "all of them, even if late (the paper's rule, §II-B)"
+    ),
+}
+"""Every mask rule, the tightest first: what one allows, those after it allow, too. To add one, add its name to
+`MaskRule` and its line here."""
 
 
 class Status(IntEnum):
@@ -53,22 +94,43 @@ def travel_time(dx: Any, dy: Any, speed: Any, sqrt: Callable[[Any], Any]) -> Any
     return sqrt(dx * dx + dy * dy) / speed
 
 
-def finish_time(ready: Any, travel: Any, work: Any) -> Any:
-    """When a robot that is free at `ready` finishes a task: first the way, then the work."""
-    return (ready + travel) + work
+def visit(ready: Any, travel: Any, work: Any) -> VisitTimes:
+    """When a robot that is free at `ready` does a task: first the way, then the work, without delay.
+
+    Args:
+        ready: when the robot is free.
+        travel: how long it travels to the task.
+        work: how long it works there.
+    """
+    arrives = ready + travel
+    return VisitTimes(departs=ready, arrives=arrives, starts=arrives, finishes=arrives + work)
+
+
+def next_event(
+    ready: Any, waiting: Any, where: Callable[[Any, Any, Any], Any], least: Callable[[Any], tuple[Any, Any]]
+) -> tuple[Any, Any]:
+    """When a robot acts next, and which: the one that is free first, ties to the lowest index.
+
+    Args:
+        ready: (..., M) when each robot is free.
+        waiting: (..., M) bool, those that may be selected.
+        where: chooses elements, as ``numpy.where`` does.
+        least: the least of each row and its first index.
+
+    Returns:
+        (...) times, infinite where nobody may be selected, and (...) indices, which mean nothing there.
+    """
+    return least(where(waiting, ready, math.inf))
 
 
 def may_choose(rule: MaskRule, finish: Any, ready: Any, deadline: Any) -> Any:
     """Which tasks the mask rule allows a robot that is free at `ready`, if nobody has taken them.
 
-    To add a rule, add its name to `MaskRule` and its formula here: environment and simulator follow.
+    Raises:
+        ConfigError: if there is no such rule.
     """
-    if rule == "feasible":
-        return finish <= deadline
-    if rule == "active":
-        return (ready <= deadline) & (finish == finish)  # the second term only broadcasts to (..., N)
     check_mask_rule(rule)
-    return finish == finish  # "unvisited"
+    return MASK_RULES[rule].allows(finish, ready, deadline)
 
 
 def check_mask_rule(rule: object) -> None:
@@ -77,15 +139,20 @@ def check_mask_rule(rule: object) -> None:
     Raises:
         ConfigError: if there is none of that name.
     """
-    if not isinstance(rule, str) or rule not in get_args(MaskRule):
-        raise ConfigError(f"mask_rule is {rule!r}; expected one of {', '.join(get_args(MaskRule))}")
+    if not isinstance(rule, str) or rule not in MASK_RULES:
+        raise ConfigError(f"mask_rule is {rule!r}; expected one of {', '.join(MASK_RULES)}")
 
 
-def task_cost(taken: Any, finish: Any, deadline: Any, end: Any, where: Any, maximum: Any) -> Any:
+def loosest(rules: Iterable[MaskRule]) -> MaskRule:
+    """The mask rule that allows the most of one or more."""
+    return max(rules, key=list(MASK_RULES).index)
+
+
+def task_cost(finish: Any, deadline: Any, end: Any, where: Any, maximum: Any) -> Any:
     """Each task's term of the objective, Eq. 1 of the paper: f/d if late, else 0.
 
-    A task nobody took counts as finished at the end of the mission or at its deadline, whichever is later,
-    so that it costs at least 1.
+    A task nobody took, of which `finish` is infinite, counts as finished at the end of the mission or at its deadline,
+    whichever is later, so that it costs at least 1.
     """
-    counted = where(taken, finish, maximum(end, deadline))
-    return where(taken & (finish <= deadline), 0.0, counted / deadline)
+    counted = where(finish < math.inf, finish, maximum(end, deadline))
+    return where(finish <= deadline, 0.0, counted / deadline)

@@ -17,12 +17,10 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-from mrta_zoo.rules import MaskRule, finish_time, may_choose, travel_time
+from mrta_zoo.reach import BoolArray, in_time
+from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import FloatArray, Scenario
-
-BoolArray = npt.NDArray[np.bool_]
 
 MOST_MARGIN = 0.25
 """The frame is the map where no margin around the places is wider than this share of their extent."""
@@ -121,14 +119,6 @@ def frame_of(scenario: Scenario, possible: BoolArray | None = None) -> tuple[Flo
     if 0 < size * MOST_MARGIN < margin:
         return least, most - least
     return origin, np.array(scenario.map_size)
-
-
-def in_time(scenario: Scenario) -> BoolArray:
-    """(M, N) what each robot could finish by its deadline if it went straight there at the start."""
-    dx, dy = (scenario.task_xy[:, axis] - scenario.robot_xy[:, axis, None] for axis in (0, 1))
-    travel = travel_time(dx, dy, scenario.speed[:, None], np.sqrt)
-    finish = finish_time(0.0, travel, scenario.workload / scenario.capacity[:, None])
-    return np.asarray(may_choose("feasible", finish, 0.0, scenario.deadline))
 
 
 def useful_robots(possible: BoolArray) -> BoolArray:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from mrta_zoo.errors import ActionError, PlanError
 from mrta_zoo.mission import Mission
 from mrta_zoo.plan import Plan
-from mrta_zoo.rules import MaskRule, check_mask_rule
+from mrta_zoo.rules import MASK_RULES, MaskRule, check_mask_rule, may_choose
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
 from mrta_zoo.wording import counted
@@ -194,13 +194,10 @@ def tightest_rule(scenario: Scenario, plan: Plan) -> MaskRule:
     Raises:
         PlanError: if the plan does not fit the scenario.
     """
-    rule: MaskRule = "feasible"
-    for visits in verify(scenario, plan).schedule:
-        ready = 0.0
-        for visit in visits:
-            if ready > visit.deadline:
-                return "unvisited"
-            if not visit.completed:
-                rule = "active"
-            ready = visit.finish
-    return rule
+    schedule = verify(scenario, plan).schedule
+    visits = [
+        (visit.finish, ready, visit.deadline)
+        for route in schedule
+        for visit, ready in zip(route, (0.0, *(visit.finish for visit in route)), strict=False)
+    ]
+    return next(rule for rule in MASK_RULES if all(may_choose(rule, *visit) for visit in visits))

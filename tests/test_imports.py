@@ -20,6 +20,7 @@ LAYERS = (
         (
             "mrta_zoo.errors",
             "mrta_zoo.wording",
+            "mrta_zoo.actions",
             "mrta_zoo.digits",
             "mrta_zoo.bounds",
             "mrta_zoo.extras",
@@ -36,7 +37,9 @@ LAYERS = (
             "mrta_zoo.scenario",
             "mrta_zoo.plan",
             "mrta_zoo.rules",
+            "mrta_zoo.reach",
             "mrta_zoo.scales",
+            "mrta_zoo.scenario_batch",
         ),
     ),
     ("dynamics and scores", ("mrta_zoo.mission", "mrta_zoo.batch", "mrta_zoo.verify", "mrta_zoo.left_out")),

@@ -7,7 +7,7 @@ from factories import hopeless_scenario, named_scenario, small_scenario
 
 from mrta_zoo.left_out import LeftOut, left_out
 from mrta_zoo.plan import Plan
-from mrta_zoo.scales import in_time
+from mrta_zoo.reach import in_time
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any
 
 from mrta_zoo.debug.advisors import Advisor, make_advisor
 from mrta_zoo.debug.outlook import Prospect, outlook
 from mrta_zoo.debug.recorder import play
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.protocol import Policy, Solver
-from mrta_zoo.rules import MaskRule
+from mrta_zoo.rules import loosest
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import Choice, Decision, Trace
 from mrta_zoo.verify import Visit, verify
@@ -187,9 +187,8 @@ def _parting(traces: tuple[Trace, Trace], advisors: tuple[Advisor, Advisor]) -> 
     scenario = traces[0].scenario
     # Under one rule the same robot is to choose as long as all choices are the same. One that its own rule retires
     # stays here.
-    rules: Sequence[MaskRule] = get_args(MaskRule)
-    loosest = max((trace.mask_rule for trace in traces), key=rules.index)
-    common = [Trace.of_plan(scenario, trace.plan(), loosest) for trace in traces]
+    rule = loosest(trace.mask_rule for trace in traces)
+    common = [Trace.of_plan(scenario, trace.plan(), rule) for trace in traces]
     pairs = zip(common[0].decisions(), common[1].decisions(), strict=False)
     found = next((pair for pair in pairs if pair[0].choice.task != pair[1].choice.task), None)
     if found is None:

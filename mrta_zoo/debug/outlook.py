@@ -114,7 +114,7 @@ def outlook(
     given, digits = probabilities or {}, Digits.of(scenario)
     columns = zip(
         which.tolist(), np.hypot(dx, dy).tolist(), travel.tolist(), finish.tolist(), (deadline - finish).tolist(),
-        deadline.tolist(), mission.reasons(robot)[which].tolist(), mission.status[which].tolist(),
+        deadline.tolist(), mission.reasons[robot, which].tolist(), mission.status[which].tolist(),
         mission.taken_by[which].tolist(), mission.finish[which].tolist(), rival.tolist(), soonest.tolist(), strict=True,
     )  # fmt: skip
     return [

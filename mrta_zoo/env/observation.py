@@ -142,8 +142,9 @@ class Observer:
 
     def observe(self, mission: Mission, robot: int) -> Observation:
         """What `robot` sees now. Fresh arrays at each call. The mask is what it may choose when next free."""
-        self.look(mission)
-        return {"observation": self.tables(robot), "action_mask": self.mask(mission, robot)}
+        known = mission.known(robot)
+        self.look(known)
+        return {"observation": self.tables(robot), "action_mask": self.mask(known, robot)}
 
     def look(self, mission: Mission) -> None:
         """Take in the mission as it stands. `flat`, `tables` and `state` show what was last looked at.

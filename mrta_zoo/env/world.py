@@ -18,13 +18,13 @@ from mrta_zoo.env.rewards import as_rewards
 from mrta_zoo.env.settings import Settings
 from mrta_zoo.errors import ActionError, ConfigError, OutOfBoundsError
 from mrta_zoo.mission import Finished, Mission
-from mrta_zoo.rules import MaskReason
+from mrta_zoo.rules import MaskReason, Status
 from mrta_zoo.scenario import Scenario
 
 Info = dict[str, Any]
 
 # As plain integers, which are faster to look up and compare than members of an enumeration.
-_CHOOSABLE, _TAKEN, _NO_TASK = int(MaskReason.CHOOSABLE), int(MaskReason.TAKEN), int(MaskReason.NO_TASK)
+_CHOOSABLE, _NO_TASK, _COMPLETED = int(MaskReason.CHOOSABLE), int(MaskReason.NO_TASK), int(Status.COMPLETED)
 
 
 class World:
@@ -39,7 +39,6 @@ class World:
         action_spaces: for each name ``Discrete(num_actions)``, each an object of its own so that it has its own seed.
         observation_space: the space of every agent's observations.
         state_space: the space of `state`.
-        completed: number of tasks completed by the clock.
     """
 
     def __init__(self, settings: Settings, num_actions: int) -> None:
@@ -55,9 +54,9 @@ class World:
         self.observation_space = self._space(num_actions)
         self.state_space = state_space(n, m)
         self.agents: list[str] = []
-        self.completed = 0
         self._rng: np.random.Generator | None = None
         self._mission: Mission | None = None
+        self._looked_at: Mission | None = None  # since it last changed
 
     @property
     def mission(self) -> Mission:
@@ -77,17 +76,11 @@ class World:
             scenario = self.settings.draw(self._rng)
         else:
             self.settings.check_fits(scenario)
-        self._mission = mission = Mission(scenario, self.settings.mask_rule)
+        self._mission = Mission(scenario, self.settings.mask_rule)
         self._observer = Observer(scenario, self.max_tasks, len(self.names), self.settings.mask_rule)
-        self._looked = False
-        n, m = scenario.num_tasks, scenario.num_robots
-        self.agents = self.names[:m] if self.settings.absent == "omit" else list(self.names)
-        self.completed = 0
+        self._looked_at = None
+        self.agents = self.names[: scenario.num_robots] if self.settings.absent == "omit" else list(self.names)
         self._decided = [0.0] * len(self.agents)
-        # Kept up to date by `take`: only the row of the robot and the column of the task change.
-        self._reasons = np.full((len(self.agents), self.max_tasks), _NO_TASK, dtype=np.int8)
-        for robot in range(m):
-            self._reasons[robot, :n] = mission.reasons(robot)
         return self._reward([])
 
     def take(self, robot: int, task: int) -> None:
@@ -99,23 +92,21 @@ class World:
         mission = self.mission
         mission.take(robot, task)
         self._decided[robot] = mission.time
-        self._reasons[: mission.scenario.num_robots, task] = _TAKEN
-        self._reasons[robot, : mission.scenario.num_tasks] = mission.reasons(robot)
 
     def advance(self) -> list[float]:
         """Move the clock to the next robot to act and return each agent's reward."""
         finished = self.mission.advance()
-        self._looked = False
-        for event in finished:
-            self.completed += event.completed
+        self._looked_at = None
         return self._reward(finished)
 
     def infos(self) -> dict[str, Info]:
         """Fresh infos of every agent, see `mrta_v0`."""
-        reasons = self._reasons.copy()
+        mission = self.mission
+        robots, tasks = mission.reasons.shape
+        reasons = np.full((len(self.agents), self.max_tasks), _NO_TASK, dtype=np.int8)
+        reasons[:robots, :tasks] = mission.reasons
         masks = (reasons == _CHOOSABLE).view(np.int8)
-        time = self.mission.time
-        completed = self.completed
+        time, completed = mission.time, int(np.count_nonzero(mission.status == _COMPLETED))
         return {
             name: {
                 "time": time,
@@ -134,21 +125,21 @@ class World:
 
     def mask(self, robot: int) -> npt.NDArray[np.int8]:
         """(max_tasks,) what `robot` may choose when next free; all 0 for one the scenario does not have."""
-        if robot >= len(self.agents):
-            return np.zeros(self.max_tasks, dtype=np.int8)
-        mask: npt.NDArray[np.int8] = (self._reasons[robot] == _CHOOSABLE).view(np.int8)
+        mask = np.zeros(self.max_tasks, dtype=np.int8)
+        if robot < self.mission.scenario.num_robots:
+            mask[: self.mission.scenario.num_tasks] = self.mission.mask(robot)
         return mask
 
     def seen_by(self, robot: int, mask: npt.NDArray[np.int8]) -> Any:
         """What `robot` sees now, in the form that the settings ask for; `mask` goes with it in all but the flat one."""
-        self._look()
+        self._look(self.mission.known(robot))
         form = self.settings.observation
         seen = self._observer.tables(robot) if form == "dict" else self._observer.flat(robot)
         return seen if form == "flat" else {"observation": seen, "action_mask": mask}
 
     def state(self) -> FloatTable:
         """(S,) the global state."""
-        self._look()
+        self._look(self.mission)
         return self._observer.state()
 
     def robot(self, agent: str) -> int:
@@ -177,11 +168,10 @@ class World:
             return spaces.Dict([("observation", flat), ("action_mask", tables["action_mask"])])
         return flat if self.settings.observation == "flat" else tables
 
-    def _look(self) -> None:
-        mission = self.mission
-        if not self._looked:
+    def _look(self, mission: Mission) -> None:
+        if mission is not self._looked_at:
             self._observer.look(mission)
-            self._looked = True
+            self._looked_at = mission
 
     def _reward(self, finished: Sequence[Finished]) -> list[float]:
         reward, robots = self.settings.reward, self.mission.scenario.num_robots

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 
-from mrta_zoo.rules import finish_time, travel_time
+from mrta_zoo.rules import travel_time, visit
 from mrta_zoo.scenario import Scenario
 
 Routes = tuple[tuple[int, ...], ...]
@@ -28,7 +28,7 @@ def on_time(scenario: Scenario, routes: Sequence[Iterable[int]]) -> Routes:
         for task in route:
             to_x, to_y = scenario.task_xy[task].tolist()
             travel = travel_time(to_x - x, to_y - y, speed, math.sqrt)
-            finish = finish_time(ready, travel, float(scenario.workload[task]) / capacity)
+            finish = visit(ready, travel, float(scenario.workload[task]) / capacity).finishes
             if task not in taken and finish <= scenario.deadline[task]:
                 taken.add(task)
                 kept[-1].append(int(task))

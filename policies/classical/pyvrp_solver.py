@@ -17,8 +17,9 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.classical.exact.task_sets import IntArray, within_reach
 from mrta_zoo.policies.classical.on_time import Routes, on_time
+from mrta_zoo.reach import in_time
 from mrta_zoo.rules import travel_time
-from mrta_zoo.scales import frame_of, in_time, slack_time, useful_robots
+from mrta_zoo.scales import frame_of, slack_time, useful_robots
 from mrta_zoo.scenario import Scenario
 
 BUDGET = 5.0
@@ -73,7 +74,7 @@ class PyVrpSolver:
 
     def solve(self, scenario: Scenario) -> Plan:
         """A plan for `scenario`."""
-        tasks = np.unique(np.concatenate([within_reach(scenario, robot) for robot in range(scenario.num_robots)]))
+        tasks = np.flatnonzero(within_reach(scenario).any(axis=0))
         routes: Routes = ((),) * scenario.num_robots
         if len(tasks):
             routes = on_time(scenario, self._search(scenario, tasks))

@@ -190,7 +190,7 @@ def episode_of(trace: Trace) -> Episode:
 
 
 def _decision(mission: Mission, choice: Choice) -> Decision:
-    reasons = mission.reasons(mission.actor)
+    reasons = mission.reasons[mission.actor]
     open_to_it = int((reasons == MaskReason.CHOOSABLE).sum())
     return Decision(
         time=_short(mission.time),

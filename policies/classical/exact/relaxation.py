@@ -8,9 +8,10 @@ from functools import partial
 import numpy as np
 import numpy.typing as npt
 
-from mrta_zoo.policies.classical.exact.task_sets import ROUNDING, first_finish
+from mrta_zoo.policies.classical.exact.task_sets import ROUNDING
 from mrta_zoo.policies.interruption import interruptible
-from mrta_zoo.rules import travel_time
+from mrta_zoo.reach import first_finish
+from mrta_zoo.rules import travel_time, visit
 from mrta_zoo.scenario import FloatArray, Scenario
 
 MOST_TASKS = 2000
@@ -31,7 +32,7 @@ def most_completable(scenario: Scenario, seconds: float = math.inf) -> int:
         scenario: the scenario.
         seconds: how long it may take; then the tasks within reach are counted.
     """
-    finish = np.stack([first_finish(scenario, robot) for robot in range(scenario.num_robots)])
+    finish = first_finish(scenario)
     latest = scenario.deadline * (1 + ROUNDING)
     within_reach = int(np.count_nonzero((finish <= latest).any(axis=0)))
     if within_reach == 0 or scenario.num_tasks > MOST_TASKS:
@@ -59,7 +60,7 @@ def _least_durations(
     x, y = scenario.task_xy.T
     travel = travel_time(x[None, :] - x[:, None], y[None, :] - y[:, None], speed, np.sqrt)
     work = scenario.workload / capacity
-    in_time = (finish[:, None] + travel) + work <= latest
+    in_time = visit(finish[:, None], travel, work).finishes <= latest
     np.fill_diagonal(in_time, False)
     from_task = np.where(in_time & (finish <= latest)[:, None], travel, np.inf).min(axis=0) + work
     return np.where(finish <= latest, np.minimum(finish, from_task), np.inf)

@@ -9,12 +9,14 @@ where a deadline is met exactly. So the earliest finish is all that has to be ke
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from mrta_zoo.rules import finish_time, travel_time
+from mrta_zoo.reach import BoolArray, first_finish
+from mrta_zoo.rules import travel_time, visit
 from mrta_zoo.scenario import FloatArray, Scenario
 
 IntArray = npt.NDArray[np.int64]
@@ -70,14 +72,14 @@ def task_sets(
         max_states: stop when there are more states than this, of 50 bytes each: then the sets found have few tasks.
         stop_at: stop at this time, too, as `time.perf_counter` tells it.
     """
-    reach = within_reach(scenario, robot)
+    reach = np.flatnonzero(within_reach(scenario, [robot])[0])
     if len(reach) > MOST_TASKS:
         return TaskSets(np.empty((0, 1), dtype=np.int64), all_found=False)
     x, y = scenario.task_xy[reach].T
     travel = travel_time(x[None, :] - x[:, None], y[None, :] - y[:, None], scenario.speed[robot], np.sqrt)
     work, deadline = scenario.workload[reach] / scenario.capacity[robot], scenario.deadline[reach]
     layers: list[_Layer] = []
-    layer: _Layer | None = _first(first_finish(scenario, robot)[reach], deadline)
+    layer: _Layer | None = _first(first_finish(scenario, [robot])[0, reach], deadline)
     states = 0
     while layer is not None and len(layer):
         layers.append(layer)
@@ -93,18 +95,9 @@ def task_sets(
     return TaskSets(np.concatenate(routes) if routes else none, all_found=layer is not None)
 
 
-def within_reach(scenario: Scenario, robot: int) -> IntArray:
-    """The tasks that a robot may be able to complete: those that it could do first, up to rounding."""
-    in_time = first_finish(scenario, robot) <= scenario.deadline * (1 + ROUNDING)
-    return np.flatnonzero(in_time).astype(np.int64)
-
-
-def first_finish(scenario: Scenario, robot: int) -> FloatArray:
-    dx, dy = (scenario.task_xy - scenario.robot_xy[robot]).T
-    finish: FloatArray = finish_time(
-        0.0, travel_time(dx, dy, scenario.speed[robot], np.sqrt), scenario.workload / scenario.capacity[robot]
-    )
-    return finish
+def within_reach(scenario: Scenario, robots: Sequence[int] | slice = slice(None)) -> BoolArray:
+    """(M, N) the tasks that each robot may be able to complete: those that it could do first, up to rounding."""
+    return first_finish(scenario, robots) <= scenario.deadline * (1 + ROUNDING)
 
 
 def _first(finish: FloatArray, deadline: FloatArray) -> _Layer:
@@ -121,7 +114,7 @@ def _next(
     for task in range(len(deadline)):
         if time.perf_counter() > stop_at:
             return None
-        finish = finish_time(layer.finish, travel[layer.last, task], work[task])
+        finish = visit(layer.finish, travel[layer.last, task], work[task]).finishes
         before = np.flatnonzero((finish <= deadline[task]) & (layer.tasks >> task & 1 == 0))
         tasks, finish = layer.tasks[before] | 1 << task, finish[before]
         keep = _earliest_of_each(tasks, finish)

@@ -14,7 +14,7 @@ from mrta_zoo.policies.classical.local_search.problem import Problem
 from mrta_zoo.scenario import FloatArray, Scenario
 from mrta_zoo.verify import verify
 
-finish_time = compiled(rules.finish_time)
+visit = compiled(rules.visit)
 
 
 class Tours(NamedTuple):
@@ -130,7 +130,7 @@ def _retime(problem: Problem, tours: Tours, robot: int, start: int) -> int:
     for position in range(start, size):
         task = tours.tasks[robot, position]
         leg = problem.distance[place, task] / speed
-        ready = finish_time(ready, leg, problem.work[robot, task])
+        ready = visit(ready, leg, problem.work[robot, task]).finishes
         if ready > problem.deadline[task]:
             return position
         tours.leg[robot, position] = leg
