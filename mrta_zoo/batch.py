@@ -272,7 +272,7 @@ class BatchMission:
         choice = (self._allowed & self.untaken[:, None]).any(2)
         alive = ~self.retired
         # Whoever becomes free next with a choice acts; whoever becomes free before that without one retires.
-        when, actor = next_event(self.ready, alive & choice, torch.where, _least)
+        when, actor = next_event(self.ready, ~(alive & choice), torch.where, _least)
         over = torch.isinf(when)
         index = torch.arange(self.ready.shape[1], device=self.ready.device)
         before = (self.ready < when[:, None]) | ((self.ready == when[:, None]) & (index < actor[:, None]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -82,7 +83,7 @@ class Mission:
         self.finish: FloatArray = np.full(n, np.inf)
         self.status = np.full(n, _ACTIVE, dtype=np.int8)
         self.finish_if: FloatArray = np.empty((m, n))
-        self.reasons: ReasonArray = np.empty((m, n), dtype=np.int8)
+        self.reasons: ReasonArray = np.full((m, n), _CHOOSABLE, dtype=np.int8)
         order = np.argsort(scenario.deadline, kind="stable")
         self._by_deadline = list(zip(scenario.deadline[order].tolist(), order.tolist(), strict=True))
         self._passed = 0  # how many of `_by_deadline` lie before the clock
@@ -170,16 +171,14 @@ class Mission:
         Returns:
             What was finished on the way, in order of time, then robot.
         """
-        ready, waiting = np.array(self.ready), ~np.array(self.retired)
         while True:
-            time, robot = next_event(ready, waiting, np.where, _least)
-            if time == np.inf:
+            time, robot = next_event(self.ready, self.retired, _where, _least)
+            if time == math.inf:
                 self.actor = -1
                 break
             self.time, self.actor = time, robot
             if np.count_nonzero(self.mask(robot)):
                 break
-            waiting[robot] = False
             self.retired[robot] = True
         return self._finish_until(self.time)
 
@@ -197,10 +196,13 @@ class Mission:
         x, y = self.position[robot]
         travel = travel_time(self._x - x, self._y - y, scenario.speed[robot], np.sqrt)
         finish = visit(ready, travel, self._work[robot]).finishes
-        reasons = np.where(scenario.deadline < ready, _DEADLINE_PASSED, _TOO_LATE)
-        reasons[may_choose(self.mask_rule, finish, ready, scenario.deadline)] = _CHOOSABLE
-        reasons[self.taken_by >= 0] = _TAKEN
-        self.finish_if[robot], self.reasons[robot] = finish, reasons
+        self.finish_if[robot] = finish
+        reasons = self.reasons[robot]
+        taken = reasons == _TAKEN
+        reasons.fill(_TOO_LATE)
+        np.putmask(reasons, scenario.deadline < ready, _DEADLINE_PASSED)
+        np.putmask(reasons, may_choose(self.mask_rule, finish, ready, scenario.deadline), _CHOOSABLE)
+        np.putmask(reasons, taken, _TAKEN)
 
     def _finish_until(self, time: float) -> list[Finished]:
         finished = []
@@ -250,6 +252,11 @@ class Mission:
             )
 
 
-def _least(times: FloatArray) -> tuple[float, int]:
-    first = int(times.argmin())
-    return float(times[first]), first
+# Of lists, which are faster than arrays while there are few robots.
+def _where(condition: list[bool], value: float, others: list[float]) -> list[float]:
+    return [value if holds else other for holds, other in zip(condition, others, strict=True)]
+
+
+def _least(values: list[float]) -> tuple[float, int]:
+    least = min(values)
+    return least, values.index(least)

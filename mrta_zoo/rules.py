@@ -102,25 +102,26 @@ def visit(ready: Any, travel: Any, work: Any) -> VisitTimes:
         travel: how long it travels to the task.
         work: how long it works there.
     """
-    arrives = ready + travel
-    return VisitTimes(departs=ready, arrives=arrives, starts=arrives, finishes=arrives + work)
+    departs = ready
+    starts = arrives = departs + travel
+    return VisitTimes(departs, arrives, starts, starts + work)
 
 
 def next_event(
-    ready: Any, waiting: Any, where: Callable[[Any, Any, Any], Any], least: Callable[[Any], tuple[Any, Any]]
+    ready: Any, out: Any, where: Callable[[Any, Any, Any], Any], least: Callable[[Any], tuple[Any, Any]]
 ) -> tuple[Any, Any]:
     """When a robot acts next, and which: the one that is free first, ties to the lowest index.
 
     Args:
         ready: (..., M) when each robot is free.
-        waiting: (..., M) bool, those that may be selected.
+        out: (..., M) bool, those that may not be selected: they are retired, or have nothing to choose.
         where: chooses elements, as ``numpy.where`` does.
         least: the least of each row and its first index.
 
     Returns:
-        (...) times, infinite where nobody may be selected, and (...) indices, which mean nothing there.
+        (...) times, infinite where all are out, and (...) indices, which mean nothing there.
     """
-    return least(where(waiting, ready, math.inf))
+    return least(where(out, math.inf, ready))
 
 
 def may_choose(rule: MaskRule, finish: Any, ready: Any, deadline: Any) -> Any:

@@ -18,13 +18,13 @@ from mrta_zoo.env.rewards import as_rewards
 from mrta_zoo.env.settings import Settings
 from mrta_zoo.errors import ActionError, ConfigError, OutOfBoundsError
 from mrta_zoo.mission import Finished, Mission
-from mrta_zoo.rules import MaskReason, Status
+from mrta_zoo.rules import MaskReason
 from mrta_zoo.scenario import Scenario
 
 Info = dict[str, Any]
 
 # As plain integers, which are faster to look up and compare than members of an enumeration.
-_CHOOSABLE, _NO_TASK, _COMPLETED = int(MaskReason.CHOOSABLE), int(MaskReason.NO_TASK), int(Status.COMPLETED)
+_CHOOSABLE, _NO_TASK = int(MaskReason.CHOOSABLE), int(MaskReason.NO_TASK)
 
 
 class World:
@@ -39,6 +39,7 @@ class World:
         action_spaces: for each name ``Discrete(num_actions)``, each an object of its own so that it has its own seed.
         observation_space: the space of every agent's observations.
         state_space: the space of `state`.
+        completed_by_now: number of tasks that the clock has seen completed; `Mission.completed` counts those to come, too.
     """
 
     def __init__(self, settings: Settings, num_actions: int) -> None:
@@ -54,6 +55,7 @@ class World:
         self.observation_space = self._space(num_actions)
         self.state_space = state_space(n, m)
         self.agents: list[str] = []
+        self.completed_by_now = 0
         self._rng: np.random.Generator | None = None
         self._mission: Mission | None = None
         self._looked_at: Mission | None = None  # since it last changed
@@ -80,7 +82,9 @@ class World:
         self._observer = Observer(scenario, self.max_tasks, len(self.names), self.settings.mask_rule)
         self._looked_at = None
         self.agents = self.names[: scenario.num_robots] if self.settings.absent == "omit" else list(self.names)
+        self.completed_by_now = 0
         self._decided = [0.0] * len(self.agents)
+        self._reasons = np.full((len(self.agents), self.max_tasks), _NO_TASK, dtype=np.int8)
         return self._reward([])
 
     def take(self, robot: int, task: int) -> None:
@@ -97,16 +101,18 @@ class World:
         """Move the clock to the next robot to act and return each agent's reward."""
         finished = self.mission.advance()
         self._looked_at = None
+        for event in finished:
+            self.completed_by_now += event.completed
         return self._reward(finished)
 
     def infos(self) -> dict[str, Info]:
         """Fresh infos of every agent, see `mrta_v0`."""
         mission = self.mission
         robots, tasks = mission.reasons.shape
-        reasons = np.full((len(self.agents), self.max_tasks), _NO_TASK, dtype=np.int8)
-        reasons[:robots, :tasks] = mission.reasons
+        self._reasons[:robots, :tasks] = mission.reasons
+        reasons = self._reasons.copy()
         masks = (reasons == _CHOOSABLE).view(np.int8)
-        time, completed = mission.time, int(np.count_nonzero(mission.status == _COMPLETED))
+        time, completed = mission.time, self.completed_by_now
         return {
             name: {
                 "time": time,
@@ -125,9 +131,9 @@ class World:
 
     def mask(self, robot: int) -> npt.NDArray[np.int8]:
         """(max_tasks,) what `robot` may choose when next free; all 0 for one the scenario does not have."""
-        mask = np.zeros(self.max_tasks, dtype=np.int8)
-        if robot < self.mission.scenario.num_robots:
-            mask[: self.mission.scenario.num_tasks] = self.mission.mask(robot)
+        mask, reasons = np.zeros(self.max_tasks, dtype=np.int8), self.mission.reasons
+        if robot < len(reasons):
+            mask[: reasons.shape[1]] = reasons[robot] == _CHOOSABLE
         return mask
 
     def seen_by(self, robot: int, mask: npt.NDArray[np.int8]) -> Any:
