@@ -47,7 +47,7 @@ tasks not yet taken may be chosen:
 
 - ``"feasible"`` (default): those that this robot can finish by their deadline;
 - ``"active"``: those whose deadline has not passed;
-- ``"unvisited"``: all, even if late (the paper's rule).
+- ``"unvisited"``: all of them, even if late (the paper's rule, §II-B).
 
 An illegal action ends the episode for everyone in `env()` (PettingZoo's `TerminateIllegalWrapper`): the agent's
 reward is `illegal_reward`, the others' is 0. One outside the action space raises `errors.OutOfBoundsError`. In

@@ -187,11 +187,11 @@ def test_the_mask_rules(rule: MaskRule, at_0: list[int], at_6: list[int], at_13:
 def test_why_a_robot_may_not_choose() -> None:
     mission = Mission(scenario(THREE))
     choosable, taken, passed, too_late = MaskReason.CHOOSABLE, MaskReason.TAKEN, *list(MaskReason)[2:4]
-    assert mission.reasons(0).tolist() == [choosable, too_late, choosable]
+    assert mission.reasons[0].tolist() == [choosable, too_late, choosable]
     mission.assign(0)
-    assert mission.reasons(0).tolist() == [taken, too_late, choosable]
+    assert mission.reasons[0].tolist() == [taken, too_late, choosable]
     mission.assign(2)
-    assert mission.reasons(0).tolist() == [taken, passed, taken]
+    assert mission.reasons[0].tolist() == [taken, passed, taken]
     assert passed is MaskReason.DEADLINE_PASSED
     assert too_late is MaskReason.TOO_LATE
 

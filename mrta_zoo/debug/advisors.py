@@ -14,8 +14,8 @@ from typing import Any, Protocol, runtime_checkable
 import numpy as np
 import numpy.typing as npt
 
+from mrta_zoo.actions import as_action
 from mrta_zoo.env.observation import Observation, Observer
-from mrta_zoo.env.world import as_action
 from mrta_zoo.mission import Mission
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.protocol import Policy, Solver

@@ -98,7 +98,7 @@ def outlook(
     Raises:
         ConfigError: if there is no such robot.
     """
-    scenario = mission.scenario
+    mission, scenario = mission.known(robot), mission.scenario
     if not 0 <= robot < scenario.num_robots:
         raise ConfigError(f"there is no robot {robot}; expected a number from 0 to {scenario.num_robots - 1}")
     which = np.arange(scenario.num_tasks) if tasks is None else np.array(tasks, dtype=np.intp)

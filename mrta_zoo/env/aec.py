@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from pettingzoo import AECEnv
 
+from mrta_zoo.actions import as_action
 from mrta_zoo.env.base import EnvBase
 from mrta_zoo.env.settings import Settings, TeamOptions, with_options
 from mrta_zoo.errors import ActionError
@@ -73,7 +74,7 @@ class AecMrtaEnv(EnvBase, AECEnv[str, Any, Any]):
             self._was_dead_step(action)
             return
         world = self._world
-        task = world.as_action(agent, action)
+        task = as_action(agent, action, self.num_actions)
         try:
             world.take(world.index[agent], task)
         except ActionError as error:

@@ -24,7 +24,7 @@ class EnvBase:
 
     Args:
         settings: the environment's options.
-        num_actions: of every agent.
+        num_actions: of every agent; whether an action is one is judged by this, not by the spaces handed out.
     """
 
     def __init__(self, settings: Settings, num_actions: int) -> None:

@@ -20,10 +20,10 @@ import gymnasium
 import numpy as np
 import numpy.typing as npt
 
+from mrta_zoo.actions import next_legal
 from mrta_zoo.bounds import as_finite
 from mrta_zoo.env.aec import AecMrtaEnv
 from mrta_zoo.env.settings import Illegal, Options, one_of, with_options
-from mrta_zoo.env.world import next_legal
 from mrta_zoo.errors import ActionError, ConfigError, OutOfBoundsError
 from mrta_zoo.mission import Mission
 from mrta_zoo.show.render import RENDER_FPS, RENDER_MODES

@@ -38,11 +38,12 @@ import numpy.typing as npt
 from pettingzoo import ParallelEnv
 from pettingzoo.utils.env_logger import EnvLogger
 
+from mrta_zoo.actions import as_action, next_legal, noop
 from mrta_zoo.bounds import as_finite
 from mrta_zoo.digits import full
 from mrta_zoo.env.base import EnvBase
 from mrta_zoo.env.settings import Illegal, Settings, TeamOptions, one_of, with_options
-from mrta_zoo.env.world import Info, next_legal
+from mrta_zoo.env.world import Info
 from mrta_zoo.errors import ActionError
 from mrta_zoo.show.render import RENDER_FPS, RENDER_MODES
 
@@ -74,8 +75,8 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
         one_of("on_illegal", on_illegal, get_args(Illegal))
         settings = Settings.of(options)
         assert settings.max_tasks is not None
-        super().__init__(settings, num_actions=settings.max_tasks + 1)
-        self.noop = settings.max_tasks
+        self.noop = noop(settings.max_tasks)
+        super().__init__(settings, num_actions=self.noop + 1)
         self.on_illegal = on_illegal
         self.illegal_reward = as_finite("illegal_reward", illegal_reward)
         self._present: list[str] = []
@@ -165,7 +166,7 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
                 there = ", ".join(self._present[:10]) + (", …" if len(self._present) > 10 else "")
                 raise ActionError(f"there is an action for {agent!r}; the agents now are {there}")
         return {
-            agent: self._world.as_action(agent, actions[agent]) if agent in actions else self.noop
+            agent: as_action(agent, actions[agent], self.num_actions) if agent in actions else self.noop
             for agent in self._present
         }
 

@@ -16,7 +16,7 @@ from gymnasium import spaces
 from mrta_zoo.env.observation import FloatTable, Observer, flat_space, observation_space, state_space
 from mrta_zoo.env.rewards import as_rewards
 from mrta_zoo.env.settings import Settings
-from mrta_zoo.errors import ActionError, ConfigError, OutOfBoundsError
+from mrta_zoo.errors import ActionError, ConfigError
 from mrta_zoo.mission import Finished, Mission
 from mrta_zoo.rules import MaskReason
 from mrta_zoo.scenario import Scenario
@@ -32,14 +32,13 @@ class World:
 
     Attributes:
         settings: the environment's options, all filled in.
-        num_actions: of every agent; whether an action is one is judged by this, not by the spaces handed out.
         names: names of the possible agents, ``robot_0`` to ``robot_{max_robots-1}``.
         agents: names of those that are there in the current episode: the scenario's and, with ``absent="noop"``, all.
         index: robot index of each name.
         action_spaces: for each name ``Discrete(num_actions)``, each an object of its own so that it has its own seed.
         observation_space: the space of every agent's observations.
         state_space: the space of `state`.
-        completed_by_now: number of tasks that the clock has seen completed; `Mission.completed` counts those to come, too.
+        completed_by_now: number of tasks completed by the clock; `Mission.completed` counts those still under way, too.
     """
 
     def __init__(self, settings: Settings, num_actions: int) -> None:
@@ -48,7 +47,6 @@ class World:
         n, m = settings.max_tasks, settings.max_robots
         self.settings = settings
         self.max_tasks = n
-        self.num_actions = num_actions
         self.names = [f"robot_{robot}" for robot in range(m)]
         self.index = {name: robot for robot, name in enumerate(self.names)}
         self.action_spaces = {name: spaces.Discrete(num_actions) for name in self.names}
@@ -159,14 +157,6 @@ class World:
         except (KeyError, TypeError):
             raise ActionError(f"there is no agent {agent!r}; they are {self.names[0]} to {self.names[-1]}") from None
 
-    def as_action(self, agent: str, action: Any) -> int:
-        """An action as a Python integer within the action space.
-
-        Raises:
-            OutOfBoundsError: if it is none.
-        """
-        return as_action(agent, action, self.num_actions)
-
     def _space(self, num_actions: int) -> spaces.Space[Any]:
         n, m = self.max_tasks, len(self.names)
         tables, flat = observation_space(n, m, num_actions), flat_space(n, m)
@@ -183,26 +173,6 @@ class World:
         reward, robots = self.settings.reward, self.mission.scenario.num_robots
         assert callable(reward)  # a name was replaced at construction
         return as_rewards(reward(self.mission, finished), robots) + [0.0] * (len(self.agents) - robots)
-
-
-def as_action(agent: str, action: Any, num_actions: int) -> int:
-    """An action as a Python integer from 0 to ``num_actions - 1``.
-
-    Raises:
-        OutOfBoundsError: if it is none.
-    """
-    try:
-        number = operator.index(action)
-    except TypeError:
-        number = -1
-    if not 0 <= number < num_actions or isinstance(action, bool):
-        raise OutOfBoundsError(f"{agent} sent action {action!r}; expected a whole number from 0 to {num_actions - 1}")
-    return number
-
-
-def next_legal(mask: npt.NDArray[Any], action: int) -> int:
-    """The first action that the mask allows, from `action` on and then from 0."""
-    return int(np.roll(mask, -action).argmax() + action) % len(mask)
 
 
 def _scenario_option(options: dict[str, Any] | None) -> Scenario | None:

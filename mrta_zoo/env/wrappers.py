@@ -14,7 +14,7 @@ from pettingzoo import AECEnv
 from pettingzoo.utils.env_logger import EnvLogger
 from pettingzoo.utils.wrappers import BaseWrapper, OrderEnforcingWrapper
 
-from mrta_zoo.env.world import as_action
+from mrta_zoo.actions import as_action
 from mrta_zoo.errors import ActionError, OutOfBoundsError
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
+from mrta_zoo.actions import split_mask
 from mrta_zoo.env.observation import EGO_FEATURES, MISSION_FEATURES, ROBOT_FEATURES, TASK_FEATURES
 from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
@@ -46,13 +47,14 @@ class ActorCritic(nn.Module):
 
         Where nothing may be chosen at all they are all equal.
         """
-        tables, mask = observation["observation"], observation["action_mask"] > 0
-        leading, rows = mask.shape[:-1], tables["tasks"].shape[-2]
+        tables = observation["observation"]
+        rows = tables["tasks"].shape[-2]
+        mask, noop = split_mask(observation["action_mask"] > 0, rows)
+        leading = mask.shape[:-1]
         flat = {name: table.reshape(-1, *table.shape[len(leading) :]) for name, table in tables.items()}
-        states = DecisionStates.of_tables(flat, mask[..., :rows].reshape(-1, rows))
+        states = DecisionStates.of_tables(flat, mask.reshape(-1, rows))
         scores: Tensor = self.network(self.network.encode(Tasks.of_tables(flat)), states).reshape(*leading, rows)
-        if mask.shape[-1] > rows:  # the parallel form: the no-op, where it is allowed, is all that is
-            noop = mask[..., rows:]
+        if noop.shape[-1]:  # where it is allowed, it is all that is
             scores = torch.cat((scores.masked_fill(noop, -torch.inf), torch.where(noop, 0.0, -torch.inf)), -1)
         return scores.clamp(min=torch.finfo(scores.dtype).min)
 

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 import torch
 
+from mrta_zoo.actions import noop, split_mask
 from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.env.observation import MISSION_FEATURES, TASK_FEATURES, Observation
 from mrta_zoo.errors import ConfigError
@@ -130,10 +131,10 @@ class NeuralPolicy:
             raise ConfigError('a policy reads Dict observations; make the environment with observation="dict"')
         seen, mask = observation["observation"], observation["action_mask"]
         tasks = len(seen["tasks"])
-        if len(mask) > tasks:  # the parallel form, whose last action is the no-op
-            if mask[tasks]:
-                return Preferences(tasks, 0.0, np.zeros(tasks, dtype=np.float32))
-            observation = {**observation, "action_mask": mask[:tasks]}
+        mask, idle = split_mask(mask, tasks)
+        if idle.any():
+            return Preferences(noop(tasks), 0.0, np.zeros(tasks, dtype=np.float32))
+        observation = {**observation, "action_mask": mask}
         if not mask.any():
             raise ConfigError("this robot has nothing to choose; a policy acts only when its robot's turn comes")
         unchanging = (

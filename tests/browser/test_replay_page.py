@@ -202,11 +202,11 @@ def test_the_table_tells_why_a_task_may_not_be_chosen(page):
     index = next(
         decision.index
         for mission, decision in TRACES[0].replay()
-        if (mission.reasons(decision.robot) == 3).sum() > 0 and (mission.reasons(decision.robot) == 1).sum() > 0
+        if (mission.reasons[decision.robot] == 3).sum() > 0 and (mission.reasons[decision.robot] == 1).sum() > 0
     )
     mission, decision = TRACES[0].mission(index), TRACES[0].decisions()[index]
     page.tab.evaluate(f"pick(0, {index})")
-    counts = np.bincount(mission.reasons(decision.robot), minlength=4)
+    counts = np.bincount(mission.reasons[decision.robot], minlength=4)
     assert counts[2] == 0  # which is left out
     assert page.texts("#side-0 .decision p") == [
         f"{counts[0]} to choose from, {counts[1]} taken, {counts[3]} too late; "
@@ -246,7 +246,7 @@ def test_each_deadline_is_joined_to_its_task(page, side):
     left = page.tab.locator(f"#side-{side} .gantt .chart").bounding_box()["x"]
     left += page.tab.evaluate(f"sides[{side}].gantt.left()")
     for task in range(SCENARIO.num_tasks):
-        if np.isnan(finish[task]):
+        if np.isinf(finish[task]):
             continue
         due, y = end_of_way(page, side, task)
         shown = min(SCENARIO.deadline[task], END) / END

@@ -57,7 +57,7 @@ def test_everything_stays_within_its_space(scenario, rule, form, staggered, seed
             assert np.array_equal(info["action_mask"] == 1, info["mask_reason"] == MaskReason.CHOOSABLE)
             assert (info["mask_reason"][scenario.num_tasks :] == MaskReason.NO_TASK).all()
             assert (info["mask_reason"][: scenario.num_tasks] != MaskReason.NO_TASK).all()
-            robot = env.unwrapped.mission.reasons(int(other.split("_")[1]))
+            robot = env.unwrapped.mission.reasons[int(other.split("_")[1])]
             assert np.array_equal(info["mask_reason"][: scenario.num_tasks], robot)
             assert type(env.terminations[other]) is type(env.truncations[other]) is bool
         observation, _, terminated, truncated, info = env.last()

@@ -33,8 +33,8 @@ def test_rewards_sum_to_what_they_promise(scenario, rule, seed):
         env.reset()
         decisions, shown[reward] = play(env, seed)
         mission = env.unwrapped.mission
-    late = mission.finish > scenario.deadline  # NaN, never taken, is not late: it is counted below
     taken = mission.taken_by >= 0
+    late = taken & (mission.finish > scenario.deadline)
     end = np.maximum(mission.time, scenario.deadline)
     cost = (mission.finish / scenario.deadline)[late].sum() + (end / scenario.deadline)[~taken].sum()
     rate = (taken & ~late).sum() / n

@@ -76,7 +76,7 @@ def test_plans_are_plans_of_the_mission(scenario, rule, form, staggered, seed):
             position[robot] += 1
         replay.advance()
     assert replay.routes == mission.routes
-    assert np.array_equal(replay.finish, mission.finish, equal_nan=True)
+    assert np.array_equal(replay.finish, mission.finish)
     # And once more by hand.
     for robot, route in enumerate(mission.routes):
         time, place = 0.0, scenario.robot_xy[robot]

@@ -16,7 +16,7 @@ from mrta_zoo.mission import Mission
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.aec_loop import run_in_environment
 from mrta_zoo.policies.classical.heuristics import EarliestDeadlinePolicy, NearestPolicy, RandomPolicy
-from mrta_zoo.policies.plan_policy import ReplayPolicy
+from mrta_zoo.policies.plan_policy import PlanPolicy
 from mrta_zoo.policies.protocol import Policy
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
@@ -111,7 +111,7 @@ def test_the_aec_loop_names_who_chose_no_task(task: Any) -> None:
     with pytest.raises(ActionError, match=sentence):
         run_in_environment(Odd(), scenario)
     with pytest.raises(ActionError, match=sentence):
-        run_in_environment(ReplayPolicy(Plan.of([[]]), then=Odd()), scenario)
+        run_in_environment(PlanPolicy(Plan.of([[]]), then=Odd()), scenario)
 
 
 @pytest.mark.parametrize("kind", [np.int64, np.array])
