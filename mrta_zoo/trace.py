@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from mrta_zoo.errors import ActionError, PlanError
 from mrta_zoo.mission import Mission
 from mrta_zoo.plan import Plan
 from mrta_zoo.rules import MASK_RULES, MaskRule, check_mask_rule, may_choose
 from mrta_zoo.scenario import Scenario
-from mrta_zoo.verify import verify
+from mrta_zoo.verify import Score, verify
 from mrta_zoo.wording import counted
 
 TOLERANCE = 1e-3
@@ -63,11 +64,11 @@ class Decision:
     choice: Choice
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)  # without slots, so that it can keep what follows from its choices
 class Trace:
     """The scenario of an episode and every choice made in it, from the start, maybe not to the end.
 
-    Arrivals, statuses, masks and their reasons are not stored: `replay` shows the mission before each decision.
+    Arrivals, statuses, masks and their reasons are not stored: `steps` shows the mission before each decision.
 
     Attributes:
         scenario: the scenario.
@@ -101,8 +102,8 @@ class Trace:
             for task in (choice.advice, *(choice.probabilities or ())):
                 if task is not None and task not in tasks:
                     raise PlanError(f"decision {index} names task {task}; tasks are numbered 0 to {len(tasks) - 1}")
-        for _ in self.replay():  # every choice must be legal
-            pass
+        decisions = tuple(decision for _, decision in self.steps())  # every choice must be legal
+        object.__setattr__(self, "_decisions", decisions)
         if self.bookmark is not None and not 0 <= self.bookmark <= len(self.choices):
             raise PlanError(f"the bookmark is {self.bookmark}; expected a number from 0 to {len(self.choices)}")
 
@@ -136,7 +137,7 @@ class Trace:
             )
         return cls(scenario, tuple(choices), mission.mask_rule, plan.method, bound=plan.bound)
 
-    def replay(self) -> Iterator[tuple[Mission, Decision]]:
+    def steps(self) -> Iterator[tuple[Mission, Decision]]:
         """The mission before each decision, with the decision. It is one mission that goes on: do not keep it."""
         mission = Mission(self.scenario, self.mask_rule)
         for index, choice in enumerate(self.choices):
@@ -149,7 +150,8 @@ class Trace:
 
     def decisions(self) -> tuple[Decision, ...]:
         """Every decision."""
-        return tuple(decision for _, decision in self.replay())
+        decisions: tuple[Decision, ...] = vars(self)["_decisions"]
+        return decisions
 
     def mission(self, index: int | None = None) -> Mission:
         """A fresh mission as it stood before decision `index`; by default after the last one."""
@@ -157,8 +159,16 @@ class Trace:
 
     def plan(self) -> Plan:
         """The routes taken, as a plan."""
-        routes = self.mission().routes
+        routes: list[list[int]] = [[] for _ in range(self.scenario.num_robots)]
+        for decision in self.decisions():
+            if decision.choice.task is not None:
+                routes[decision.robot].append(decision.choice.task)
         return Plan(tuple(map(tuple, routes)), self.scenario.name, self.method, self.bound)
+
+    @cached_property
+    def score(self) -> Score:
+        """What the verifier makes of `plan`."""
+        return verify(self.scenario, self.plan())
 
 
 def after(scenario: Scenario, choices: Sequence[Choice], mask_rule: MaskRule) -> Mission:

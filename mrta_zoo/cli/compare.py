@@ -16,7 +16,8 @@ from mrta_zoo.cli.flags import names, optional, parse
 from mrta_zoo.cli.plan_files import is_episode, read_any_plan
 from mrta_zoo.debug.advisors import Advisor, make_advisor
 from mrta_zoo.debug.called import called
-from mrta_zoo.debug.comparison import Alternative, Comparison, Fate, Outcome, Parting, compare
+from mrta_zoo.debug.comparison import Comparison, Fate, compare
+from mrta_zoo.debug.parting import Alternative, Parting
 from mrta_zoo.debug.percent import percent
 from mrta_zoo.digits import rounded
 from mrta_zoo.errors import ConfigError
@@ -30,7 +31,7 @@ from mrta_zoo.scenario import Scenario
 from mrta_zoo.show.terminal.console import preparing, results_console, say
 from mrta_zoo.show.terminal.sheet import Sheet
 from mrta_zoo.show.view import Digits
-from mrta_zoo.verify import COST
+from mrta_zoo.verify import COST, Score
 from mrta_zoo.wording import counted
 
 
@@ -119,15 +120,28 @@ def write_comparison(found: Comparison, methods: Sequence[str], path: Path) -> N
     Raises:
         ConfigError: if the file cannot be written.
     """
-    body: dict[str, Any] = asdict(found)
-    del body["traces"]
-    document = {"format": "mrta_zoo.comparison", "version": 1, **body, "methods": list(methods)}
+    parting = found.parting
+    document: dict[str, Any] = {
+        "format": "mrta_zoo.comparison",
+        "version": 1,
+        "scenario": found.scenario,
+        "tasks": found.tasks,
+        "methods": list(methods),
+        "outcomes": _outcomes_json(found.scores),
+        "parting": parting and asdict(parting) | {"otherwise": _outcomes_json(parting.otherwise)},
+        "disagreements": list(map(asdict, found.disagreements)),
+        "turns": list(map(asdict, found.turns)),
+        "fates": list(map(asdict, found.fates)),
+    }
     scenario = found.traces[0].scenario
     names = {"task_names": list(scenario.task_names), "robot_names": list(scenario.robot_names)}
     document |= {field: each for field, each in names.items() if each}
-    for name in ("disagreements", "turns", "fates"):
-        document[name] = list(document[name])
     write_document(document, path, ConfigError)
+
+
+def _outcomes_json(scores: Sequence[Score | None]) -> tuple[dict[str, Any] | None, ...]:
+    figures = ("completed", "cost", "distance", "makespan")
+    return tuple(score and {figure: getattr(score, figure) for figure in figures} for score in scores)
 
 
 def report(found: Comparison, methods: tuple[str, str], rows: int) -> list[str | Group]:
@@ -198,13 +212,13 @@ def _outcomes(found: Comparison, methods: tuple[str, str]) -> Group:
     return _listed(
         f"{found.scenario}: {counted(found.tasks, 'task')} (cost by {COST})",
         ("method", "completed", "cost", "distance", "makespan"),
-        [(name, *_figures(outcome)) for name, outcome in zip(methods, found.outcomes, strict=True)],
+        [(name, *_figures(score)) for name, score in zip(methods, found.scores, strict=True)],
         2,
     )
 
 
-def _figures(outcome: Outcome) -> tuple[object, ...]:
-    return outcome.completed, f"{outcome.cost:.3f}", rounded(outcome.distance), rounded(outcome.makespan)
+def _figures(score: Score) -> tuple[object, ...]:
+    return score.completed, f"{score.cost:.3f}", rounded(score.distance), rounded(score.makespan)
 
 
 def _fate(fate: Fate, index: int, scenario: Scenario) -> str:
@@ -241,15 +255,15 @@ def _costs(found: Comparison, parting: Parting, methods: tuple[str, str]) -> lis
     lines = []
     for index, method in enumerate(methods):
         task = parting.choices[1 - index].task
-        instead, outcome = parting.otherwise[index], found.outcomes[index]
+        instead, score = parting.otherwise[index], found.scores[index]
         choice = "staying there" if task is None else f"task {found.traces[0].scenario.task_name(task)} there"
         if instead is None:
             lines.append(f"{method} may not have {choice}, by its mask rule")
             continue
         lines.append(
             f"{method} with {choice} and then by itself: completed {instead.completed} "
-            f"({instead.completed - outcome.completed:+d}), "
-            f"cost {instead.cost:.3f} ({instead.cost - outcome.cost:+.3f})"
+            f"({instead.completed - score.completed:+d}), "
+            f"cost {instead.cost:.3f} ({instead.cost - score.cost:+.3f})"
         )
     return [*lines, ""]
 

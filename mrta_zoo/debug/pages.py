@@ -39,7 +39,7 @@ class View:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class Line:
     """A line of a table.
 
     Attributes:
@@ -74,7 +74,7 @@ class Listing:
     title: str
     columns: tuple[str, ...]
     left: tuple[str, ...]
-    rows: Sequence[Row]
+    rows: Sequence[Line]
     spare: tuple[str, ...] = ()
 
 
@@ -87,7 +87,7 @@ def listing(stepper: Stepper, view: View, commands: Sequence[tuple[str, str]]) -
         commands: each with what it does, for help.
     """
     if view.subject == "help":
-        return Listing("commands", ("command", "what it does"), ("command", "what it does"), [*map(Row, commands)])
+        return Listing("commands", ("command", "what it does"), ("command", "what it does"), [*map(Line, commands)])
     if view.subject == "log":
         return _log(stepper)
     if view.subject == "robots" or (stepper.done and view.robot is None):
@@ -118,7 +118,7 @@ def _tasks(stepper: Stepper, view: View) -> Listing:
             str(each),
         )
         tone = "advised" if advised else "made" if chosen else "plain" if free else "faint"
-        rows.append(Row(row, tone, each.who if scenario.robot_names else ""))
+        rows.append(Line(row, tone, each.who if scenario.robot_names else ""))
     when = "" if own else " when it is next free"
     title = f"{scenario.robot_name(robot)} may choose {choices} of {counted(len(rows), 'task')}{when}"
     numbers = ("dist", "travel", "finish", "slack", "due", *(("prob %",) if probable else ()))
@@ -145,7 +145,7 @@ def _robots(stepper: Stepper) -> Listing:
             str(len(route)), digits.time(mission.ready[robot]), str(int(mission.mask(robot).sum())), doing,
         )  # fmt: skip
         tone = "advised" if now.doing == "acting" else "faint" if now.doing == "retired" else "plain"
-        rows.append(Row(row, tone, _named(mission.heading[robot], scenario.task_names)))
+        rows.append(Line(row, tone, _named(mission.heading[robot], scenario.task_names)))
     robots = headings("robot", scenario.robot_names)
     columns = (*robots, "place", "capacity", "speed", "taken", "free at", "choices", "")
     spare = ("speed", "place", "capacity", "taken", "choices")
@@ -156,7 +156,7 @@ def _log(stepper: Stepper) -> Listing:
     """The decisions made so far, the last one first."""
     trace, scenario = stepper.trace(), stepper.scenario
     rows, digits = [], Digits.of(scenario)
-    for mission, decision in trace.replay():
+    for mission, decision in trace.steps():
         if decision.index == stepper.position:
             break
         choice = decision.choice
@@ -170,7 +170,7 @@ def _log(stepper: Stepper) -> Listing:
             "" if finish is None or task is None else digits.time(scenario.deadline[task] - finish), words,
         )  # fmt: skip
         tone = "plain" if choice.advice is None else "made"
-        rows.append(Row(row, tone, _named(choice.advice, scenario.task_names)))
+        rows.append(Line(row, tone, _named(choice.advice, scenario.task_names)))
     columns = ("decision", "time", "robot", "task", "finish", "slack", "")
     texts = (*_texts(("robot",), scenario.robot_names), *_texts(("task",), scenario.task_names))
     title = f"{counted(len(rows), 'decision')} so far, the last one first"

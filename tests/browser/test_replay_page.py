@@ -201,7 +201,7 @@ def test_of_decisions_at_the_same_time_those_after_are_yet_to_be_made(page):
 def test_the_table_tells_why_a_task_may_not_be_chosen(page):
     index = next(
         decision.index
-        for mission, decision in TRACES[0].replay()
+        for mission, decision in TRACES[0].steps()
         if (mission.reasons[decision.robot] == 3).sum() > 0 and (mission.reasons[decision.robot] == 1).sum() > 0
     )
     mission, decision = TRACES[0].mission(index), TRACES[0].decisions()[index]

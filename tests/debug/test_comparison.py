@@ -7,11 +7,12 @@ from factories import small_scenario
 from strategies import seeded_scenarios
 
 from mrta_zoo.debug import Stepper, compare, record
-from mrta_zoo.debug.comparison import Alternative, Disagreement, Fate, Outcome, Turn, outcome
+from mrta_zoo.debug.comparison import Disagreement, Fate, Turn
+from mrta_zoo.debug.parting import Alternative
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.registry import make_solver
 from mrta_zoo.scenario import Scenario
-from mrta_zoo.verify import verify
+from mrta_zoo.verify import Score, verify
 
 # One robot at 0 with tasks at 3, 5 and 12 on a line: the nearest first is 3, 5, 12; the earliest deadline first is 12,
 # where it is at 12 <= 13, then 5 at 12 + 7 = 19 <= 20, then 3 at 21 > 20.
@@ -20,12 +21,16 @@ LINE = Scenario(
 )  # type: ignore[arg-type]
 
 
+def figures(score: Score | None) -> tuple[float, ...] | None:
+    return score and (score.completed, score.cost, score.distance, score.makespan)
+
+
 def test_by_hand() -> None:
     found = compare(LINE, "nearest", Plan(((2, 1),), "line", "plan"))
     assert (found.scenario, found.tasks, found.methods) == ("line", 3, ("nearest", "plan"))
     # Nearest: 3 at 3, 5 at 5, 12 at 12: all three. The plan leaves task 0, at the end of the mission at 19 or its
     # deadline, 20: cost 20 / 20.
-    assert found.outcomes == (Outcome(3, 0.0, 12.0, 12.0), Outcome(2, 1.0, 19.0, 19.0))
+    assert list(map(figures, found.scores)) == [(3, 0.0, 12.0, 12.0), (2, 1.0, 19.0, 19.0)]
     parting = found.parting
     assert parting is not None
     assert (parting.index, parting.time, parting.robot) == (0, 0.0, 0)
@@ -34,7 +39,7 @@ def test_by_hand() -> None:
         Alternative(2, 12.0, 12.0, 1.0, (None, None)),
     )
     # Nearest after 12: 5 at 19; then 3 at 21 is too late. The plan after 3: 12 at 12, then 5 at 19.
-    assert parting.otherwise == (Outcome(2, 1.0, 19.0, 19.0), Outcome(3, 0.0, 19.0, 19.0))
+    assert list(map(figures, parting.otherwise)) == [(2, 1.0, 19.0, 19.0), (3, 0.0, 19.0, 19.0)]
     # In the place of nearest the plan goes for 12, for 12 again, and for 12, where both go.
     assert found.disagreements == (Disagreement(0, 0.0, 0, 0, 2), Disagreement(1, 3.0, 0, 1, 2))
     assert found.turns == (
@@ -48,7 +53,7 @@ def test_methods_that_do_the_same_do_not_part() -> None:
     scenario = small_scenario(3)
     found = compare(scenario, "nearest", make_solver("nearest").solve(scenario))
     assert (found.parting, found.disagreements, found.turns, found.fates) == (None, (), (), ())
-    assert found.outcomes[0] == found.outcomes[1]
+    assert found.scores[0] == found.scores[1]
 
 
 def test_what_is_said_of_the_parting_is_what_a_stepper_finds() -> None:
@@ -71,7 +76,7 @@ def test_what_is_said_of_the_parting_is_what_a_stepper_finds() -> None:
             assert task is not None
             stepper.take(task)
             stepper.finish()
-            assert parting.otherwise[index] == outcome(stepper.trace())
+            assert parting.otherwise[index] == stepper.trace().score
         asked = Stepper(scenario, "edf")
         differing = []
         for choice in one.choices:
@@ -109,7 +114,7 @@ def test_methods_under_different_rules() -> None:
     assert [trace.mask_rule for trace in found.traces] == ["feasible", "active"]
     assert (parting.index, parting.time, [each.task for each in parting.choices]) == (2, 19.0, [None, 0])
     # The first may not have it; the second stays: task 0 counts as finished at 20, its deadline.
-    assert parting.otherwise == (None, Outcome(2, 1.0, 19.0, 19.0))
+    assert list(map(figures, parting.otherwise)) == [None, (2, 1.0, 19.0, 19.0)]
 
 
 def test_probabilities_of_both_are_shown() -> None:

@@ -47,7 +47,7 @@ def test_a_learned_policy_shows_its_probabilities(decode: str) -> None:
     trace = record(SCENARIO, "capam-plus", **options)
     assert trace.plan() == make_solver("capam-plus", **options).solve(SCENARIO)
     assert trace.decode == decode
-    for mission, decision in trace.replay():
+    for mission, decision in trace.steps():
         probabilities = decision.choice.probabilities
         assert probabilities is not None
         assert sum(probabilities.values()) == pytest.approx(1, abs=0.01)

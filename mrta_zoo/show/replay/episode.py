@@ -17,13 +17,12 @@ from mrta_zoo.scenario import Scenario
 from mrta_zoo.show.lanes import deadline_lanes
 from mrta_zoo.show.view import Digits, shown_box, shown_time
 from mrta_zoo.trace import Choice, Trace
-from mrta_zoo.verify import verify
 
 MOST_CANDIDATES, MOST_MASKED = 10, 4
 """Tasks listed at each decision: the best of those that may be chosen, and the nearest of those that may not."""
 
 
-class Visit(msgspec.Struct, frozen=True, array_like=True):
+class VisitJson(msgspec.Struct, frozen=True, array_like=True):
     """A task on a robot's route.
 
     Attributes:
@@ -45,7 +44,7 @@ class Visit(msgspec.Struct, frozen=True, array_like=True):
     lane: int
 
 
-class Candidate(msgspec.Struct, frozen=True, array_like=True):
+class CandidateJson(msgspec.Struct, frozen=True, array_like=True):
     """A task at a decision, as the acting robot has it before it; see `debug.outlook.Prospect`.
 
     Attributes:
@@ -67,7 +66,7 @@ class Candidate(msgspec.Struct, frozen=True, array_like=True):
     percent: str
 
 
-class Decision(msgspec.Struct, frozen=True):
+class DecisionJson(msgspec.Struct, frozen=True):
     """A decision: who chose what, when, and among which tasks.
 
     Attributes:
@@ -85,10 +84,10 @@ class Decision(msgspec.Struct, frozen=True):
     task: int | None
     advice: int | None
     reasons: list[int]
-    candidates: list[Candidate]
+    candidates: list[CandidateJson]
 
 
-class Episode(msgspec.Struct, frozen=True):
+class EpisodeJson(msgspec.Struct, frozen=True):
     """One side of the page.
 
     Attributes:
@@ -107,12 +106,12 @@ class Episode(msgspec.Struct, frozen=True):
     completed: int
     cost: float
     makespan: float
-    routes: list[list[Visit]]
-    decisions: list[Decision]
+    routes: list[list[VisitJson]]
+    decisions: list[DecisionJson]
     bookmark: int | None
 
 
-class Place(msgspec.Struct, frozen=True):
+class PlaceJson(msgspec.Struct, frozen=True):
     """The scenario, as far as the page shows it, and which part of plane and time, see `mrta_zoo.show.view`."""
 
     name: str
@@ -138,7 +137,7 @@ class Place(msgspec.Struct, frozen=True):
     """After the point, of times and of distances."""
 
 
-def place_of(scenario: Scenario, makespan: float) -> Place:
+def place_of(scenario: Scenario, makespan: float) -> PlaceJson:
     """The scenario for the page.
 
     Args:
@@ -149,7 +148,7 @@ def place_of(scenario: Scenario, makespan: float) -> Place:
     tasks = np.column_stack((scenario.task_xy, scenario.deadline, scenario.workload))
     digits = Digits.of(scenario)
     robots = np.column_stack((scenario.robot_xy, scenario.capacity, scenario.speed))
-    return Place(
+    return PlaceJson(
         name=scenario.name,
         low=tuple(low.tolist()),
         size=tuple(size.tolist()),
@@ -164,20 +163,20 @@ def place_of(scenario: Scenario, makespan: float) -> Place:
     )
 
 
-def episode_of(trace: Trace) -> Episode:
+def episode_of(trace: Trace) -> EpisodeJson:
     """The episode for the page; its visits' times are the verifier's."""
-    score = verify(trace.scenario, trace.plan())
+    score = trace.score
     lanes = [deadline_lanes(visits) for visits in score.schedule]
-    routes: list[list[Visit]] = [[] for _ in range(trace.scenario.num_robots)]
+    routes: list[list[VisitJson]] = [[] for _ in range(trace.scenario.num_robots)]
     decisions = []
-    for mission, decision in trace.replay():
+    for mission, decision in trace.steps():
         route = routes[decision.robot]
         if decision.choice.task is not None:
             visit, lane = score.schedule[decision.robot][len(route)], lanes[decision.robot][len(route)]
             leave, arrive, finish = map(_short, (decision.time, visit.arrival, visit.finish))
-            route.append(Visit(visit.task, decision.index, leave, arrive, finish, visit.completed, lane))
+            route.append(VisitJson(visit.task, decision.index, leave, arrive, finish, visit.completed, lane))
         decisions.append(_decision(mission, decision.choice))
-    return Episode(
+    return EpisodeJson(
         method=trace.method or "unnamed",
         mask_rule=trace.mask_rule,
         completed=score.completed,
@@ -189,17 +188,17 @@ def episode_of(trace: Trace) -> Episode:
     )
 
 
-def _decision(mission: Mission, choice: Choice) -> Decision:
+def _decision(mission: Mission, choice: Choice) -> DecisionJson:
     reasons = mission.reasons[mission.actor]
     open_to_it = int((reasons == MaskReason.CHOOSABLE).sum())
-    return Decision(
+    return DecisionJson(
         time=_short(mission.time),
         robot=mission.actor,
         task=choice.task,
         advice=choice.advice,
         reasons=np.bincount(reasons, minlength=4)[:4].tolist(),
         candidates=[
-            Candidate(
+            CandidateJson(
                 each.task,
                 _short(each.distance),
                 _short(each.finish),

@@ -13,18 +13,18 @@ import msgspec
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.source import write_text
 from mrta_zoo.show import palette
-from mrta_zoo.show.replay.episode import Episode, Place, episode_of, place_of
+from mrta_zoo.show.replay.episode import EpisodeJson, PlaceJson, episode_of, place_of
 from mrta_zoo.trace import Trace
 from mrta_zoo.verify import COST
 
 MOST_SIDES = 2
 
 
-class Document(msgspec.Struct, frozen=True):
+class DocumentJson(msgspec.Struct, frozen=True):
     """What is written into the page."""
 
-    place: Place
-    episodes: list[Episode]
+    place: PlaceJson
+    episodes: list[EpisodeJson]
     cost: str
     """What the cost of an episode is."""
     colours: dict[str, str | tuple[str, ...]]
@@ -47,7 +47,7 @@ def replay_page(traces: Sequence[Trace]) -> str:
         raise ConfigError(f"the episodes are of different scenarios, {names}; expected two of the same")
     episodes = [episode_of(trace) for trace in traces]
     makespan = max(episode.makespan for episode in episodes)
-    document = Document(place_of(scenario, makespan), episodes, COST, _colours())
+    document = DocumentJson(place_of(scenario, makespan), episodes, COST, _colours())
     return Template(_part("replay.html")).substitute(
         title=escape(scenario.name),
         style=_part("replay.css"),

@@ -11,7 +11,7 @@ from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.registry import make_solver
 from mrta_zoo.rules import MaskReason
 from mrta_zoo.show.render.whereabouts import whereabouts
-from mrta_zoo.show.replay.episode import MOST_CANDIDATES, MOST_MASKED, Visit, episode_of, place_of
+from mrta_zoo.show.replay.episode import MOST_CANDIDATES, MOST_MASKED, VisitJson, episode_of, place_of
 from mrta_zoo.trace import Choice, Trace
 
 # On the x axis, robots at 0 (capacity 2) and 100. Task 0 is at 10, task 1 at 30, task 2 at 100, task 3 out of reach.
@@ -27,8 +27,8 @@ def test_visits() -> None:
     episode = episode_of(TRACE)
     assert episode.routes == [
         # The line to task 1's deadline begins at 35, where that to task 0's, until 40, lies below it.
-        [Visit(0, 0, 0.0, 10.0, 13.0, True, 0), Visit(1, 2, 13.0, 33.0, 35.0, True, 1)],
-        [Visit(2, 1, 0.0, 100.0 - 100.0, 20.0, True, 0)],
+        [VisitJson(0, 0, 0.0, 10.0, 13.0, True, 0), VisitJson(1, 2, 13.0, 33.0, 35.0, True, 1)],
+        [VisitJson(2, 1, 0.0, 100.0 - 100.0, 20.0, True, 0)],
     ]
     assert (episode.completed, episode.makespan, episode.method) == (3, 35.0, "mine")
     assert episode.cost == pytest.approx(50 / 50)  # task 3, which nobody took, counts as finished at its deadline
@@ -81,14 +81,14 @@ def test_between_its_times_a_robot_is_on_the_straight_line_as_the_page_draws_it(
     scenario = UniformGenerator(tasks=(30, 30), robots=(4, 4), speed=(0.5, 2.0))(np.random.default_rng(1))
     trace = Trace.of_plan(scenario, make_solver("nearest").solve(scenario))
     routes = episode_of(trace).routes
-    for mission, decision in trace.replay():
+    for mission, decision in trace.steps():
         for robot in range(4):
             here = whereabouts(mission, robot)
             expected = drawn_at(scenario, robot, routes[robot], decision.time, decision.index)
             assert (here.x, here.y) == pytest.approx(expected, abs=1e-3)
 
 
-def drawn_at(scenario: Scenario, robot: int, route: list[Visit], time: float, made: int) -> tuple[float, float]:
+def drawn_at(scenario: Scenario, robot: int, route: list[VisitJson], time: float, made: int) -> tuple[float, float]:
     """Where the page draws a robot once `made` decisions have been made."""
     visits = [visit for visit in route if visit.decision < made]
     places = [scenario.robot_xy[robot], *(scenario.task_xy[visit.task] for visit in visits)]

@@ -17,16 +17,16 @@ from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.registry import make_solver
 from mrta_zoo.show.replay import replay_page, write_replay
 from mrta_zoo.show.replay.episode import episode_of
-from mrta_zoo.show.replay.page import Document
+from mrta_zoo.show.replay.page import DocumentJson
 from mrta_zoo.trace import Trace
 
 SCENARIO = small_scenario(0, name='</script><b>&"$x')
 TRACE = Trace.of_plan(SCENARIO, make_solver("nearest").solve(SCENARIO))
 
 
-def data_of(page: str) -> Document:
+def data_of(page: str) -> DocumentJson:
     (text,) = re.findall(r'<script type="application/json" id="data">(.*?)</script>', page, re.DOTALL)
-    return msgspec.json.decode(text, type=Document)
+    return msgspec.json.decode(text, type=DocumentJson)
 
 
 def test_it_holds_the_episodes() -> None:
