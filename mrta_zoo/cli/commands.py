@@ -33,7 +33,7 @@ from mrta_zoo.policies.options import Decode
 from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.protocol import Solver
 from mrta_zoo.policies.registry import METHODS, POLISH, make_solver, method_names, used_options
-from mrta_zoo.rules import MaskRule
+from mrta_zoo.rules import MASK_RULES, MaskRule
 from mrta_zoo.show.plan.text import missed, proven, schedule_table, totals
 from mrta_zoo.show.terminal.console import preparing, progress_bar, results_console, say, warn
 from mrta_zoo.wording import counted
@@ -69,10 +69,16 @@ class PlanningFlags:
     at most, pyvrp after 5."""
     seed: int = 0
     """Of everything drawn at random. The same seed gives the same plan, unless a budget cuts the search off."""
-    mask_rule: Annotated[MaskRule | None, optional("{feasible,active,unvisited}")] = None
-    """What a robot may choose: feasible, what it can finish by the deadline; active, whose deadline has not passed;
-    unvisited, anything not yet taken. By default feasible or, for a trained policy, what it was trained under.
-    Methods that are neither heuristics nor trained only plan what is finished by its deadline."""
+    mask_rule: Annotated[
+        MaskRule | None,
+        optional(
+            f"{{{','.join(MASK_RULES)}}}",
+            help="Which of the tasks not yet taken a robot may choose: "
+            f"{'; '.join(f'{name}, {rule.help}' for name, rule in MASK_RULES.items())}. By default feasible or, for a "
+            "trained policy, what it was trained under. Methods that are neither heuristics nor trained only plan what "
+            "is finished by its deadline.",
+        ),
+    ] = None
     threads: int = 1
     """CPU threads for learned methods: one is as fast as several for single missions, and timings compare. For eils
     and +polish with --budget, as many searches at a time, of which the best counts."""

@@ -141,7 +141,7 @@ def write_comparison(found: Comparison, methods: Sequence[str], path: Path) -> N
 
 def _outcomes_json(scores: Sequence[Score | None]) -> tuple[dict[str, Any] | None, ...]:
     figures = ("completed", "cost", "distance", "makespan")
-    return tuple(score and {figure: getattr(score, figure) for figure in figures} for score in scores)
+    return tuple(None if score is None else {name: getattr(score, name) for name in figures} for score in scores)
 
 
 def report(found: Comparison, methods: tuple[str, str], rows: int) -> list[str | Group]:

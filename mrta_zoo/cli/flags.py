@@ -81,9 +81,9 @@ def _spelt(argument: str, own: str) -> str:
     return f"{own}{equals}{value}" if flag in METHOD_FLAGS else argument
 
 
-def optional(metavar: str) -> Any:
+def optional(metavar: str, help: str | None = None) -> Any:
     """A flag whose default is to be absent; the text says what happens then, and "(default: None)" would not."""
-    return tyro.conf.arg(metavar=metavar, help_behavior_hint="")
+    return tyro.conf.arg(metavar=metavar, help=help, help_behavior_hint="")
 
 
 def names(text: str, flag: str = "methods", what: str = "names", example: str = "capam,nearest") -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from mrta_zoo.debug.advice import Advice
 from mrta_zoo.debug.advisors import Advisor, make_advisor
 from mrta_zoo.debug.outlook import Prospect, SortKey, outlook, ranked
 from mrta_zoo.debug.recorder import overrule, recorded
@@ -79,11 +80,8 @@ class Stepper:
 
     def _open(self, trace: Trace, advisor: Advisor | None) -> None:
         self.scenario, self.mask_rule = trace.scenario, trace.mask_rule
-        self._trace, self._advisor = trace, advisor
+        self._trace, self._advisor, self._advice = trace, advisor, Advice(trace, advisor)
         self._choices = list(trace.choices)
-        # Of the choices that there are, by decision: the advice, and the state in which a decision finds the advisor.
-        self._advice = {index: _advice_in(choice) for index, choice in enumerate(trace.choices)}
-        self._states: dict[int, Any] = {} if advisor is None else {0: advisor.begin()}
         self.position = 0
         self.mission = Mission(self.scenario, self.mask_rule)
 
@@ -114,11 +112,7 @@ class Stepper:
     @property
     def advice(self) -> Choice | None:
         """What the policy would choose; None at the end, or if there is no policy."""
-        if self.position not in self._advice:
-            if self.done or self._advisor is None:
-                return None
-            self._ask()
-        return self._advice[self.position]
+        return self._advice.at(self.position, self.mission, self._choices)
 
     def outlook(self, robot: int | None = None, by: SortKey = "rank") -> list[Prospect]:
         """Every task as a robot has it before it, by default the one that is to choose.
@@ -255,30 +249,7 @@ class Stepper:
         else:
             self.mission.assign(choice.task)
         if made is None or made.task != choice.task:  # another course from here on
-            here = self.position
-            self._choices[here:] = [recorded(choice)]
-            self._advice = {index: advice for index, advice in self._advice.items() if index <= here}
-            self._states = {index: state for index, state in self._states.items() if index <= here + 1}
+            self._choices[self.position :] = [recorded(choice)]
+            self._advice.forget_after(self.position)
         self.position += 1
         return choice
-
-    def _ask(self) -> None:
-        """Hear the advice for this decision; from a policy that remembers, first for those it was not asked for."""
-        assert self._advisor is not None
-        begin = max(index for index in self._states if index <= self.position)
-        if self._advisor.memoryless:
-            state = self._states[max(self._states)]
-            self._advice[self.position], state = self._advisor.advise(self.mission, state)
-            self._states = {0: state}
-            return
-        mission = after(self.scenario, self._choices[:begin], self.mask_rule)
-        for index in range(begin, self.position + 1):
-            advice, self._states[index + 1] = self._advisor.advise(mission, self._states[index])
-            self._advice.setdefault(index, advice)
-            if index < self.position:
-                make(mission, self._choices[index], index)
-
-
-def _advice_in(choice: Choice) -> Choice:
-    """What the policy said at a decision that was recorded."""
-    return choice if choice.advice is None else Choice(choice.advice, choice.probabilities)

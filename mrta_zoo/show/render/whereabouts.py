@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from mrta_zoo.mission import Mission
+from mrta_zoo.rules import travel_time, visit
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,12 +27,12 @@ def whereabouts(mission: Mission, robot: int) -> Whereabouts:
     if task < 0:
         free = "acting" if robot == mission.actor else "waiting"
         return Whereabouts(x, y, "retired" if mission.retired[robot] else free)
-    if len(route) > 1:
-        origin, left = scenario.task_xy[route[-2]], float(mission.finish[route[-2]])
-    else:
-        origin, left = scenario.robot_xy[robot], 0.0
-    way = np.array((x, y)) - origin
-    needs = float(np.hypot(*way)) / float(scenario.speed[robot])
-    share = 1.0 if needs == 0 else min((mission.time - left) / needs, 1.0)
-    here = origin + share * way
-    return Whereabouts(float(here[0]), float(here[1]), "working" if share == 1.0 else "travelling")
+    first = len(route) == 1
+    (from_x, from_y) = (scenario.robot_xy[robot] if first else scenario.task_xy[route[-2]]).tolist()
+    ready = 0.0 if first else float(mission.finish[route[-2]])
+    travel = travel_time(x - from_x, y - from_y, float(scenario.speed[robot]), math.sqrt)
+    departs, arrives, *_ = visit(ready, travel, scenario.workload[task] / scenario.capacity[robot])
+    if mission.time >= arrives:
+        return Whereabouts(x, y, "working")
+    share = (mission.time - departs) / (arrives - departs)
+    return Whereabouts(from_x + share * (x - from_x), from_y + share * (y - from_y), "travelling")
