@@ -49,7 +49,7 @@ class Scenario:
     """
 
     # The field table. To add a quantity: its line here, with a default and after the others, its line in the docstring
-    # and in `batch.ScenarioBatch`, and its formula in `rules`. Files, digests, padding and notebooks follow.
+    # and in `scenario_batch.ScenarioBatch`, and its formula in `rules`. Files, digests, padding and notebooks follow.
 
     task_xy: FloatArray
     deadline: Annotated[FloatArray, Quantity("task", "time", positive=True)]

@@ -23,7 +23,7 @@ def run_in_environment(
         policy: decides for each robot when its turn comes.
         scenario: the mission.
         mask_rule: what robots may choose, see `rules.MaskRule`.
-        method: what the plan is signed with.
+        method: method name stored in the plan.
         observation: the form in which the policy reads observations.
 
     Returns:

@@ -29,7 +29,7 @@ class Solver(Protocol):
 
 @runtime_checkable
 class NeedsWarmUp(Protocol):
-    """A solver whose first plan takes longer than the others for reasons of its machinery."""
+    """A solver whose first plan takes longer than the others, as something is compiled or loaded for it."""
 
     def warm_up(self, scenario: Scenario) -> None:
         """Do whatever happens only once."""
@@ -42,7 +42,7 @@ class Hurried(Protocol):
 
     @property
     def name(self) -> str:
-        """What its plans are signed with."""
+        """Method name stored in its plans."""
 
     def solve_within(self, scenario: Scenario, seconds: float) -> Plan | None:
         """A plan for `scenario`, None if there is none after so many seconds."""

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 import torch
 
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.scenario_batch import ScenarioBatch
 
 # Task 0 takes robot 0 until 5, task 1 (zero distance) until 3.
 SMALL = Scenario(

@@ -9,12 +9,12 @@ from typing import Protocol
 import torch
 from torch import Tensor
 
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import Network
 from mrta_zoo.policies.neural.weights import load_state
 from mrta_zoo.rules import MaskRule
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.objective import Objective
 

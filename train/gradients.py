@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import torch
 from torch import Tensor
 
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.policies.neural.capam.inputs import Tasks
 from mrta_zoo.policies.neural.rollout import Scorer, Segment
 from mrta_zoo.policies.neural.tensor_tree import select, tree_map
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train.precision import Precision, autocast
 
 

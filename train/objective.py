@@ -7,9 +7,9 @@ from collections.abc import Callable
 
 from torch import Tensor
 
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.neural.rollout import Rollout
+from mrta_zoo.scenario_batch import ScenarioBatch
 
 Objective = Callable[[Rollout, ScenarioBatch], Tensor]
 """(B,) floating-point losses of a rollout of S scenarios, B = S · G; smaller is better."""

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import torch
 
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import ScenarioGenerator
 from mrta_zoo.policies.cpu_threads import few_threads
@@ -20,6 +19,7 @@ from mrta_zoo.policies.neural.capam.candidate_decoder import CandidateDecoder
 from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import Network, build_network
 from mrta_zoo.policies.neural.temperature import tempered
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train.baselines import Baseline, build_baseline
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import check_distribution, most_robots

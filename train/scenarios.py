@@ -8,8 +8,8 @@ from concurrent.futures import Future
 from dataclasses import dataclass
 from itertools import count
 
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.generators import ScenarioGenerator, draw_scenario
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train.child_process import pool_of
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, team, training_generator

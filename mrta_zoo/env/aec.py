@@ -86,7 +86,8 @@ class AecMrtaEnv(EnvBase, AECEnv[str, Any, Any]):
 
     def observe(self, agent: str) -> Any:
         """What an agent sees now; any possible agent, at any time after the first reset."""
-        return self._world.seen_by(self._world.robot(agent), self.mask(agent))
+        robot = self._world.robot(agent)
+        return self._world.seen_by(robot, self._world.mask(robot))
 
     def mask(self, agent: str) -> npt.NDArray[np.int8]:
         """(max_tasks,) int8, 1 where the agent may choose when it is next free; by this its actions are judged."""

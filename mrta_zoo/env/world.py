@@ -23,8 +23,7 @@ from mrta_zoo.scenario import Scenario
 
 Info = dict[str, Any]
 
-# As plain integers, which are faster to look up and compare than members of an enumeration.
-_CHOOSABLE, _NO_TASK = int(MaskReason.CHOOSABLE), int(MaskReason.NO_TASK)
+_CHOOSABLE = np.array(MaskReason.CHOOSABLE, np.int8)  # without dimensions, it is compared fastest
 
 
 class World:
@@ -82,7 +81,7 @@ class World:
         self.agents = self.names[: scenario.num_robots] if self.settings.absent == "omit" else list(self.names)
         self.completed_by_now = 0
         self._decided = [0.0] * len(self.agents)
-        self._reasons = np.full((len(self.agents), self.max_tasks), _NO_TASK, dtype=np.int8)
+        self._reasons = np.full((len(self.agents), self.max_tasks), MaskReason.NO_TASK, dtype=np.int8)
         return self._reward([])
 
     def take(self, robot: int, task: int) -> None:
@@ -136,13 +135,15 @@ class World:
 
     def seen_by(self, robot: int, mask: npt.NDArray[np.int8]) -> Any:
         """What `robot` sees now, in the form that the settings ask for; `mask` goes with it in all but the flat one."""
-        self._look(self.mission.known(robot))
+        known = self.mission.known(robot)
+        if known is not self._looked_at:
+            self._look(known)
         form = self.settings.observation
         seen = self._observer.tables(robot) if form == "dict" else self._observer.flat(robot)
         return seen if form == "flat" else {"observation": seen, "action_mask": mask}
 
     def state(self) -> FloatTable:
-        """(S,) the global state."""
+        """(S,) the global state, of which nothing is unknown."""
         self._look(self.mission)
         return self._observer.state()
 
@@ -165,9 +166,8 @@ class World:
         return flat if self.settings.observation == "flat" else tables
 
     def _look(self, mission: Mission) -> None:
-        if mission is not self._looked_at:
-            self._observer.look(mission)
-            self._looked_at = mission
+        self._observer.look(mission)
+        self._looked_at = mission
 
     def _reward(self, finished: Sequence[Finished]) -> list[float]:
         reward, robots = self.settings.reward, self.mission.scenario.num_robots

@@ -7,11 +7,12 @@ from collections.abc import Iterator
 
 import torch
 
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.neural.capam.inputs import Tasks, Watch
 from mrta_zoo.policies.neural.rollout import NOT_FINITE, Scorer
 from mrta_zoo.rules import MaskRule
+from mrta_zoo.scenario_batch import ScenarioBatch
 
 
 @torch.no_grad()

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import torch
 
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.neural.beam_search import beam_search
 from mrta_zoo.policies.neural.rollout import OutOfTimeError, Rollout, Scorer, roll_out
@@ -17,6 +17,7 @@ from mrta_zoo.policies.neural.symmetry import SYMMETRIES, SymmetricNetwork
 from mrta_zoo.policies.options import DEFAULT_SAMPLES, MAX_SAMPLES, Decode
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.scenario_batch import ScenarioBatch
 
 FIRST_SAMPLES = 4
 """Missions drawn at first when there is a budget, to see how long they take."""

@@ -16,7 +16,6 @@ import numpy.typing as npt
 import torch
 
 from mrta_zoo.actions import noop, split_mask
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.env.observation import MISSION_FEATURES, TASK_FEATURES, Observation
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.paths import check_no_url, suffix_of
@@ -33,6 +32,7 @@ from mrta_zoo.policies.options import Decode, SolverOptions
 from mrta_zoo.policies.pretrained import pretrained_names, pretrained_path
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.scenario_batch import ScenarioBatch
 
 UNCHANGING_TASK = [TASK_FEATURES.index(name) for name in ("x", "y", "deadline", "workload")]
 UNCHANGING_MISSION = [MISSION_FEATURES.index(name) for name in ("crossing_ratio", "work_ratio")]

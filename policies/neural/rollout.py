@@ -11,13 +11,14 @@ from typing import Any, Protocol
 import torch
 from torch import Tensor
 
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.neural.capam.candidates import Candidates
 from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks, Watch
 from mrta_zoo.policies.neural.tensor_tree import select, tree_map
 from mrta_zoo.rules import MaskRule
+from mrta_zoo.scenario_batch import ScenarioBatch
 
 SEGMENT = 12
 """Decisions between two checks of which missions are over; those are dropped, which saves their work."""

@@ -12,9 +12,9 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.rollout import Scorer
+from mrta_zoo.scenario_batch import ScenarioBatch
 
 SYMMETRIES = 8
 """Flip x or not, flip y or not, swap the axes or not; number 0 leaves everything as it is."""

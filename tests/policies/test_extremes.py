@@ -11,7 +11,6 @@ import pytest
 import torch
 
 from mrta_zoo import Scenario, mrta_v0
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.neural import decoding, rollout
@@ -25,6 +24,7 @@ from mrta_zoo.policies.neural.sharing import build_network
 from mrta_zoo.policies.neural.weights import PolicyInfo
 from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.rules import MaskRule
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.suite import builtin_suite
 from mrta_zoo.verify import verify
 

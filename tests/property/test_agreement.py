@@ -17,11 +17,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from strategies import Chooser, decisions, scenarios, seeded_chooser, seeded_scenarios
 
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.mission import Finished, Mission
 from mrta_zoo.plan import Plan
 from mrta_zoo.rules import MaskReason, MaskRule, Status
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.verify import verify
 
 RULES = get_args(MaskRule)

@@ -9,9 +9,10 @@ import pytest
 import torch
 from strategies import seeded_chooser, seeded_scenarios
 
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.mission import Mission
 from mrta_zoo.rules import MaskRule
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.verify import verify
 
 RULES = get_args(MaskRule)

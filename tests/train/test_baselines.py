@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 import torch
 
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import build_network
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train import checkpoint
 from mrta_zoo.train.baselines import ExponentialBaseline, RolloutBaseline, SamplesBaseline
 from mrta_zoo.train.config import TrainConfig

@@ -6,8 +6,8 @@ import pytest
 import torch
 
 from mrta_zoo import Scenario
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.policies.neural.rollout import Rollout
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train.objective import OBJECTIVES
 
 TWO_TASKS = Scenario(

@@ -13,7 +13,7 @@ from factories import hopeless_scenario
 from torch import Tensor
 
 from mrta_zoo import Scenario
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
@@ -21,6 +21,7 @@ from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import build_network
 from mrta_zoo.policies.neural.tensor_tree import select
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train import reinforce
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.gradients import accumulate_gradients

@@ -10,10 +10,10 @@ from multiprocessing import active_children
 import pytest
 import torch
 
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.reinforce import Reinforce
 from mrta_zoo.train.scenarios import Drawn, draw, draws

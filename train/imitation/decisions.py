@@ -9,11 +9,12 @@ from typing import Any
 import torch
 from torch import Tensor
 
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.policies.neural.capam.inputs import Tasks, Watch
 from mrta_zoo.policies.neural.rollout import SEGMENT, Segment
 from mrta_zoo.policies.neural.sharing import Network
 from mrta_zoo.policies.neural.symmetry import View
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train.imitation.experts import ExpertPlan
 
 

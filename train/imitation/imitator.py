@@ -8,10 +8,10 @@ import numpy as np
 import numpy.typing as npt
 import torch
 
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.neural.rollout import Segment
 from mrta_zoo.policies.neural.sharing import Network
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size
 from mrta_zoo.train.gradients import accumulate_gradients

@@ -15,8 +15,9 @@ import numpy as np
 import torch
 from torch import Tensor
 
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.env.observation import MISSION_FEATURES, ROBOT_FEATURES, TASK_FEATURES, Observation
+from mrta_zoo.scenario_batch import ScenarioBatch
 
 MOST_CROSSINGS = 1000.0
 """Where `Tasks.horizon` (above, and below at its inverse) and `Tasks.work_unit` saturate: beyond it deadlines either

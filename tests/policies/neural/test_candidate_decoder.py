@@ -6,12 +6,13 @@ import numpy as np
 import torch
 from torch import nn
 
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.policies.neural.capam.candidate_decoder import CandidateDecoder, _Norm
 from mrta_zoo.policies.neural.capam.candidates import Candidates
 from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.capam.neighbourhood import Neighbourhood
+from mrta_zoo.scenario_batch import ScenarioBatch
 
 HEADS, LAYERS = 2, 3
 BLOCKED = -1e4

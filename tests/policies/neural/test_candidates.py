@@ -10,7 +10,7 @@ import torch
 from strategies import seeded_chooser, seeded_scenarios
 
 from mrta_zoo import Scenario, mrta_v0
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.generators import UniformGenerator
 from mrta_zoo.policies.neural.capam.candidates import MISSION_COLUMNS, TASK_COLUMNS, Candidates
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
@@ -21,6 +21,7 @@ from mrta_zoo.policies.neural.capam.robots import ROBOT_COLUMNS
 from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import Network, build_network
 from mrta_zoo.scales import Scales
+from mrta_zoo.scenario_batch import ScenarioBatch
 
 PLUS = NetworkConfig(embedding=32, heads=4, decoder="candidates", decision_layers=2)
 

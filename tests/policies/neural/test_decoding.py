@@ -12,7 +12,7 @@ import torch
 from factories import hopeless_scenario
 
 from mrta_zoo import Scenario
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator, UniformGenerator
 from mrta_zoo.policies.neural import beam_search as beam_search_module
@@ -28,6 +28,7 @@ from mrta_zoo.policies.neural.symmetry import SYMMETRIES, SymmetricNetwork, View
 from mrta_zoo.policies.neural.weights import PolicyInfo
 from mrta_zoo.policies.options import Decode
 from mrta_zoo.rules import MaskRule
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.verify import verify
 
 SMALL = NetworkConfig(embedding=32, heads=4)

@@ -11,7 +11,7 @@ import pytest
 import torch
 from torch import Tensor, nn
 
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
@@ -23,6 +23,7 @@ from mrta_zoo.policies.neural.capam.node_features import NODE_FEATURES
 from mrta_zoo.policies.neural.policy import load_policy
 from mrta_zoo.policies.neural.sharing import build_network
 from mrta_zoo.policies.neural.weights import PolicyInfo, save_policy
+from mrta_zoo.scenario_batch import ScenarioBatch
 
 OWN = NetworkConfig(
     encoder="mine", embedding=16, heads=2, node_features=("x", "y", "zero"), context_features=("choices",)

@@ -9,7 +9,7 @@ import pytest
 import torch
 
 from mrta_zoo import Scenario, mrta_v0
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import Mixture, TaptcGenerator, UniformGenerator
 from mrta_zoo.policies.neural.capam.capsule_encoder import CapsuleEncoder, scaled_laplacian
@@ -21,6 +21,7 @@ from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import IndependentNetworks, build_network
 from mrta_zoo.policies.neural.weights import PolicyInfo
 from mrta_zoo.rules import MaskRule
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.verify import verify
 
 SMALL = NetworkConfig(embedding=32, heads=4)

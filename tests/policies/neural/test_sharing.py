@@ -11,7 +11,7 @@ import pytest
 import torch
 
 from mrta_zoo import Scenario, mrta_v0
-from mrta_zoo.batch import BatchMission, ScenarioBatch
+from mrta_zoo.batch import BatchMission
 from mrta_zoo.cli.main import main
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator, UniformGenerator
@@ -22,6 +22,7 @@ from mrta_zoo.policies.neural.policy import NeuralPolicy, load_policy
 from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import ByCapacityNetworks, IndependentNetworks, Sharing, build_network, seeded
 from mrta_zoo.policies.neural.weights import PolicyInfo, save_policy
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.reinforce import Reinforce
 

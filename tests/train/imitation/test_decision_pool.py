@@ -8,7 +8,6 @@ import pytest
 import torch
 from strategies import seeded_scenarios
 
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.classical.local_search.eils import EilsConfig, EilsSolver
 from mrta_zoo.policies.neural.capam.candidates import Candidates
@@ -16,6 +15,7 @@ from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.rollout import Segment
 from mrta_zoo.policies.neural.sharing import build_network
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train.imitation.decision_pool import DecisionPool
 from mrta_zoo.train.imitation.decisions import PlanBatch, follow
 from mrta_zoo.train.imitation.experts import ExpertPlan, Routes

@@ -10,7 +10,6 @@ import pytest
 import torch
 from strategies import seeded_chooser, seeded_scenarios
 
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.mission import Mission
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.classical.local_search.eils import EilsConfig, EilsSolver
@@ -19,6 +18,7 @@ from mrta_zoo.policies.neural.rollout import Segment
 from mrta_zoo.policies.neural.sharing import build_network
 from mrta_zoo.scales import Scales
 from mrta_zoo.scenario import Scenario
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train.imitation.decisions import PlanBatch, follow, turned
 from mrta_zoo.train.imitation.experts import ExpertPlan, Routes
 from mrta_zoo.verify import verify

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 import torch
 
-from mrta_zoo.batch import ScenarioBatch
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.classical.local_search.eils import EilsConfig, EilsSolver
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.capam.inputs import Tasks
 from mrta_zoo.policies.neural.rollout import Segment
+from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train import reinforce
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, most_robots, team
