@@ -15,7 +15,7 @@ from mrta_zoo.verify import verify
 @pytest.mark.parametrize("rule", ["feasible", "active", "unvisited"])
 def test_a_robot_works_from_the_moment_at_which_the_verifier_has_it_arrive(rule: MaskRule) -> None:
     ties = 0
-    for seed, scenario in enumerate(seeded_scenarios(200, 300)):
+    for seed, scenario in enumerate(seeded_scenarios(200, 500)):
         mission, choose = Mission(scenario, rule), seeded_chooser(seed)
         while not mission.done:
             mission.assign(choose(mission.mask(mission.actor)))
@@ -28,4 +28,4 @@ def test_a_robot_works_from_the_moment_at_which_the_verifier_has_it_arrive(rule:
                 assert here.doing == ("working" if mission.time >= arrival else "travelling")
                 if here.doing == "working":
                     assert [here.x, here.y] == scenario.task_xy[task].tolist()
-    assert ties >= 5
+    assert ties > 4
