@@ -13,7 +13,6 @@ from typing import Annotated, Any, Literal
 
 import tyro
 
-from mrta_zoo.cli.flags import run
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.destination import check_outputs
 from mrta_zoo.io.paths import as_spelt
@@ -110,4 +109,4 @@ def main(
 
 
 if __name__ == "__main__":
-    run(main, "mrta_zoo.eval.plot_history")
+    tyro.cli(main, prog="python -m mrta_zoo.eval.plot_history")

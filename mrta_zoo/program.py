@@ -1,4 +1,4 @@
-"""How our programs end where Python would show a traceback: interrupted, or with an error, while they still import."""
+"""How our programs end where Python would show a traceback: after Ctrl-C, and after an error meant for people."""
 
 from __future__ import annotations
 
@@ -6,13 +6,16 @@ import sys
 from pathlib import Path
 from types import TracebackType
 
+from mrta_zoo.errors import MrtaError
+
 SCRIPT, PACKAGE = "mrta-zoo", __name__.partition(".")[0]
 
 
 def end_in_a_sentence() -> None:
-    """Have Ctrl-C tell that it interrupted and no more, if Python was started for a program of ours.
+    """Replace tracebacks by one line, if Python was started for a program of ours.
 
-    What has imported us for a purpose of its own keeps its traceback.
+    ``mrta-zoo`` needs this only while it imports. Modules that are run by ``python -m`` need it throughout. Programs of
+    others that import us keep their tracebacks.
     """
     if _is_ours([*sys.argv, ""][0], sys.orig_argv):
         sys.excepthook = _tell
@@ -29,5 +32,8 @@ def _is_ours(script: str, started: list[str]) -> bool:
 def _tell(kind: type[BaseException], error: BaseException, traceback: TracebackType | None) -> None:
     if issubclass(kind, KeyboardInterrupt):
         print("interrupted", file=sys.stderr)
+    elif issubclass(kind, MrtaError):
+        print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
+        raise SystemExit(2)
     else:
         sys.__excepthook__(kind, error, traceback)

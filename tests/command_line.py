@@ -1,12 +1,33 @@
-"""How the command line ends when it is used wrongly."""
+"""Running the command line, and how it ends when it is used wrongly."""
 
 from __future__ import annotations
 
-import pytest
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
 
-from mrta_zoo.cli.main import main
+import pytest
+from factories import small_scenario
+
+from mrta_zoo.cli.main import COMMANDS, Command, main
 
 Captured = pytest.CaptureFixture[str]
+REPORTED = {"reproduce", "converge", "ablate", "sharing"}
+SCENARIO = small_scenario(2, tasks=12, robots=3)
+
+
+def need(command: str) -> None:
+    """Skip a test of a command that needs what is not installed."""
+    for module, commands in (("torch", {"train", "ablate", "sharing"}), ("pandas", REPORTED)):
+        if command in commands:
+            pytest.importorskip(module)
+
+
+def script(folder: Path, text: str) -> str:
+    """A file of commands for the stepper."""
+    (folder / "commands.txt").write_text(text)
+    return str(folder / "commands.txt")
 
 
 def fails(capsys: Captured, arguments: list[str]) -> str:
@@ -41,3 +62,9 @@ def changed(arguments: list[str], *flags: str) -> list[str]:
         else:
             others += [flag, value]
     return others
+
+
+def stand_in(name: str, run: Callable[[list[str]], None], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make this function the command of that name, which need not be there otherwise."""
+    monkeypatch.setitem(COMMANDS, name, Command(""))
+    monkeypatch.setitem(sys.modules, f"mrta_zoo.cli.{name}", SimpleNamespace(**{f"{name}_command": run}))

@@ -10,15 +10,16 @@ import pytest
 from factories import small_scenario
 from rich.console import Console
 
-from mrta_zoo import Plan, Scenario
-from mrta_zoo.cli.compare import report
 from mrta_zoo.debug import Stepper, compare
-from mrta_zoo.digits import full, percentage, rough, rounded, share
+from mrta_zoo.debug.comparison_report import report
+from mrta_zoo.digits import decimals, full, percentage, rough, rounded, share
 from mrta_zoo.eval.report import wording
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.eval.significance import Estimate
 from mrta_zoo.eval.table import summary_tables
+from mrta_zoo.plan import Plan
 from mrta_zoo.rules import MaskReason
+from mrta_zoo.scenario import Scenario
 from mrta_zoo.show.plan.text import totals
 from mrta_zoo.show.view import Digits
 from mrta_zoo.verify import verify
@@ -84,3 +85,10 @@ def test_completion_of_nearly_all() -> None:
     assert "completion</td>" in row._repr_html_()
     assert "0.999667" in row._repr_html_()
     assert wording.percentage(Estimate(99.97, 99.93, 100.0, 30)) == "99.970 [99.9, 100.0]"
+
+
+def test_small_times_keep_their_digits() -> None:
+    assert [full(time) for time in (60.0, 33.333333, 999999.75, 123456789.5)] == [
+        "60", "33.3333", "999999.75", "123456789.5"
+    ]  # fmt: skip
+    assert [decimals(largest, 2) for largest in (0.0, 1.2e-7, 0.018, 0.5, 3.0, 300.0)] == [2, 9, 4, 3, 2, 2]

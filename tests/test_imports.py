@@ -46,10 +46,6 @@ LAYERS = (
     ("episodes and where missions come from", ("mrta_zoo.trace", "mrta_zoo.generators", "mrta_zoo.suite")),
     ("files", ("mrta_zoo.io",)),
     ("presentation", ("mrta_zoo.show",)),
-    (
-        "how command lines are read",
-        ("mrta_zoo.cli.flags", "mrta_zoo.cli.given_flags", "mrta_zoo.cli.help_text"),
-    ),
     ("the package, and how its objects show themselves", ("mrta_zoo",)),
     ("the environment", ("mrta_zoo.env",)),
     ("its public face", ("mrta_zoo.mrta_v0",)),

@@ -1,4 +1,4 @@
-"""How programs of ours end when they are interrupted as they begin, and what others see of it."""
+"""How programs of ours end without a traceback, and what programs of others see of it."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from command_line import Captured
 
 from mrta_zoo.program import _is_ours
 
@@ -32,6 +33,13 @@ def test_programs_of_ours_show_no_traceback(module: str, tmp_path: Path) -> None
 
 def test_programs_of_others_do(tmp_path: Path) -> None:
     assert "Traceback" in run_interrupted(["-c", "import mrta_zoo"], tmp_path)[1]
+
+
+def test_errors_are_sentences() -> None:
+    command = [sys.executable, "-m", "mrta_zoo.eval.benchmarks.aec_turns", "--turns", "0"]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert (ended.returncode, ended.stdout) == (2, "")
+    assert ended.stderr == "error: turns is 0; expected a whole number >= 1\n"
 
 
 @pytest.mark.parametrize(
@@ -62,3 +70,14 @@ def test_the_example_trainer_explains_itself(
     output = capsys.readouterr()
     assert output.out.startswith("usage: ")
     assert "--updates" in output.out
+
+
+@pytest.mark.parametrize("module", ["eval.plot_history", "eval.benchmarks.aec_turns", "train.aec_reinforce"])
+def test_modules_that_are_run(module: str, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
+    pytest.importorskip("matplotlib" if module == "eval.plot_history" else "torch")
+    monkeypatch.setattr(sys, "argv", [module, "--ou", "3"])
+    monkeypatch.delitem(sys.modules, f"mrta_zoo.{module}", raising=False)
+    with pytest.raises(SystemExit) as exit_:
+        runpy.run_module(f"mrta_zoo.{module}", run_name="__main__")
+    assert exit_.value.code == 2
+    assert "--ou" in capsys.readouterr().err

@@ -14,9 +14,9 @@ import time
 from typing import Any
 
 import numpy as np
+import tyro
 
 from mrta_zoo import mrta_v0
-from mrta_zoo.cli.flags import run
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator
 
@@ -82,4 +82,4 @@ def main(turns: int = 5000, rounds: int = 5) -> None:
 
 
 if __name__ == "__main__":
-    run(main, "mrta_zoo.eval.benchmarks.aec_turns")
+    tyro.cli(main, prog="python -m mrta_zoo.eval.benchmarks.aec_turns")

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
 from tyro.conf import arg
 
-from mrta_zoo.cli.flags import names, parse
+from mrta_zoo.cli.flags import names, takes_flags
 from mrta_zoo.eval.experiment import resumable
 from mrta_zoo.eval.report.files import publish
 from mrta_zoo.eval.studies.ablation.design import PAPER_UPDATES, QUESTIONS, USUAL, ablation
@@ -52,13 +51,13 @@ class Ablate:
 
 
 @resumable()
-def ablate_command(argv: Sequence[str]) -> None:
-    """Run `mrta-zoo ablate` with these arguments.
+@takes_flags
+def ablate_command(command: Ablate) -> None:
+    """Train the variants and publish the report.
 
     Raises:
         MrtaError: if an option cannot be used, a file cannot be read or written, or training diverges.
     """
-    command = parse(Ablate, argv, "ablate")
     design = ablation(
         names(command.only, "only", "questions", "encoder,moments"),
         command.seeds,

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 from tyro.conf import arg
 
-from mrta_zoo.cli.case_choice import read_all, shown_cases
-from mrta_zoo.cli.flags import names, optional, parse
+from mrta_zoo.cli.cases import read_all, shown_cases
+from mrta_zoo.cli.flags import names, optional, takes_flags
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.converge.curves import publish_curves
 from mrta_zoo.eval.converge.experiment import converge
@@ -50,13 +49,13 @@ class Converge:
 
 
 @resumable()
-def converge_command(argv: Sequence[str]) -> None:
-    """Run `mrta-zoo converge` with these arguments.
+@takes_flags
+def converge_command(command: Converge) -> None:
+    """Measure the curves and publish them.
 
     Raises:
         MrtaError: if an option cannot be used, a file cannot be read or written, or a method fails.
     """
-    command = parse(Converge, argv, "converge")
     curves = converge(
         command.out,
         read_all(command.cases),

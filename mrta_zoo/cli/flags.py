@@ -1,41 +1,47 @@
-"""What the flags of all commands have in common."""
+"""How commands take flags: the fields of a dataclass, whose docstrings are the help."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import is_dataclass
+from functools import wraps
 from typing import Any, TypeVar, get_args, get_type_hints
 
 import tyro
 
 from mrta_zoo.cli.given_flags import check_flags
 from mrta_zoo.cli.help_text import description_of, readable_help, unfold_fields
-from mrta_zoo.errors import ConfigError, MrtaError
+from mrta_zoo.errors import ConfigError
 from mrta_zoo.wording import composed
 
-Parsed = TypeVar("Parsed")
+Flags = TypeVar("Flags")
 
 METHOD_FLAGS = ("--method", "--methods", "--policy", "--policies")
-"""How users may spell the flag that says what plans or decides, whichever of them a command calls it."""
+"""Spellings of the flag that names methods. Every command takes all of them, whichever one its help shows."""
 
 
-def parse(of: Callable[..., Parsed], argv: Sequence[str], name: str, **options: Any) -> Parsed:
-    """What a command of mrta-zoo makes of its flags; as `parse_flags`."""
-    return parse_flags(of, argv, f"mrta-zoo {name}", **options)
+def takes_flags(run: Callable[[Flags], None]) -> Callable[[Sequence[str]], None]:
+    """Make ``NAME_command(command: Flags)`` take the arguments of ``mrta-zoo NAME`` instead of a dataclass of flags."""
+    name = run.__name__.removesuffix("_command")
+
+    @wraps(run)
+    def of_arguments(argv: Sequence[str]) -> None:
+        run(parse(get_type_hints(run)["command"], argv, name))
+
+    return of_arguments
 
 
-def parse_flags(of: Callable[..., Parsed], argv: Sequence[str], program: str, **options: Any) -> Parsed:
-    """What a dataclass or a function makes of flags. Exits with a message for help, and for values of another kind.
+def parse(of: type[Flags], argv: Sequence[str], name: str, **options: Any) -> Flags:
+    """The flags of a command. Exits after printing help, or if a value has the wrong type.
 
     Args:
-        of: its parameters are the flags.
-        argv: the arguments.
-        program: what help calls it.
+        of: a dataclass with a field for each flag.
+        argv: the arguments that follow the command's name.
+        name: of the command.
         options: of `tyro.cli`.
 
     Raises:
-        ConfigError: if a flag is not known, given twice, or empty.
+        ConfigError: if a flag is unknown, given twice or empty.
     """
     known, positional = _flags_of(of)
     own = next((flag for flag in METHOD_FLAGS if flag in known), None)
@@ -44,33 +50,24 @@ def parse_flags(of: Callable[..., Parsed], argv: Sequence[str], program: str, **
     unfold_fields(of)
     config = (tyro.conf.OmitArgPrefixes,)
     with readable_help():
-        parsed: Parsed = tyro.cli(
-            of, args=arguments, prog=program, description=description_of(of), config=config, **options
+        flags: Flags = tyro.cli(
+            of, args=arguments, prog=f"mrta-zoo {name}", description=description_of(of), config=config, **options
         )
-    return parsed
+    return flags
 
 
-def run(of: Callable[..., Parsed], module: str) -> Parsed:
-    """What it makes of the flags of ``python -m MODULE``, which ends with a sentence and code 2 after an error."""
-    try:
-        return parse_flags(of, sys.argv[1:], f"python -m {module}")
-    except MrtaError as error:
-        print(f"error: {error}", file=sys.stderr)
-        sys.exit(2)
-
-
-def _flags_of(of: Callable[..., object]) -> tuple[dict[str, str], list[str]]:
-    """Flags by how they may be spelt, and the names of what stands without one."""
+def _flags_of(of: Any) -> tuple[dict[str, str], list[str]]:
+    """The flags by each of their spellings, and the names of the arguments that have no flag."""
     known: dict[str, str] = {}
     positional: list[str] = []
     for name, hint in get_type_hints(of, include_extras=True).items():
         kind, *details = get_args(hint) if hasattr(hint, "__metadata__") else (hint,)
         flag = f"--{name.replace('_', '-')}"
         if is_dataclass(kind):
-            known |= _flags_of(kind)[0]  # type: ignore[arg-type]  # it is a class
+            known |= _flags_of(kind)[0]
         elif tyro.conf.Positional in details:
             positional += [each.metavar for each in details if getattr(each, "metavar", None)] or [name.upper()]
-        elif name != "return":
+        else:
             known |= {flag: flag} | ({f"--no-{flag[2:]}": flag} if kind is bool else {})
     return known, positional
 
@@ -82,21 +79,21 @@ def _spelt(argument: str, own: str) -> str:
 
 
 def optional(metavar: str, help: str | None = None) -> Any:
-    """A flag whose default is to be absent; the text says what happens then, and "(default: None)" would not."""
+    """A flag that need not be given. Its help text says what happens then, so that "(default: None)" is left out."""
     return tyro.conf.arg(metavar=metavar, help=help, help_behavior_hint="")
 
 
 def names(text: str, flag: str = "methods", what: str = "names", example: str = "capam,nearest") -> list[str]:
-    """What a flag lists, separated by commas.
+    """The entries of a list that is separated by commas.
 
     Args:
-        text: as it was given.
-        flag: its name, and what one of its entries is called, with an s.
-        what: it lists, for the message.
-        example: of a right value.
+        text: the flag's value.
+        flag: its name, which is also the plural of what one entry is called.
+        what: the entries are, for the message.
+        example: a valid value, for the message.
 
     Raises:
-        ConfigError: if it lists nothing, or something twice.
+        ConfigError: if there is no entry, or the same one twice.
     """
     found = [name.strip() for name in text.split(",") if name.strip()]
     if not found:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -12,7 +11,7 @@ import numpy as np
 from tyro.conf import arg
 
 from mrta_zoo.bounds import check_seed
-from mrta_zoo.cli.flags import optional, parse
+from mrta_zoo.cli.flags import optional, takes_flags
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import make_generator
 from mrta_zoo.io.case_folder import CaseFormat, write_case_folder
@@ -26,23 +25,23 @@ Bounds = Annotated[str | None, optional("LOW-HIGH")]
 class Generate:
     """Draw random scenarios into a new folder that `mrta-zoo eval --cases` reads.
 
-    Bounds are LOW-HIGH, both included, or one number. Those not given are the generator's own.
+    Bounds are LOW-HIGH, both included, or one number. Bounds that are not given are the generator's own.
 
     For example:
       mrta-zoo generate --count 20 --robots 2-7 --out cases
-      mrta-zoo generate --generator uniform --tasks 50-200 --deadline 50-600 --format json --out cases
+      mrta-zoo generate --generator uniform --tasks 50-200 --format json --out cases
     """
 
     out: Annotated[Path, arg(metavar="DIR")]
-    """Folder to write; new or empty."""
+    """The folder to write, new or empty."""
     generator: Literal["taptc", "uniform"] = "taptc"
-    """taptc: like the published TAPTC cases; uniform: everything uniform within bounds, as in the paper (§IV-A)."""
+    """taptc: like the published TAPTC cases; uniform: everything uniform within its bounds, as in the paper (§IV-A)."""
     count: int = 10
     """Number of scenarios."""
     seed: int = 0
-    """The same seed and bounds give the same scenarios; the first ones stay the same with a higher --count."""
+    """Random seed. The same seed and bounds give the same scenarios, and a higher --count only adds to them."""
     format: CaseFormat = "taptc"
-    """Of the files. TAPTC files hold no speeds."""
+    """Format of the files. TAPTC files hold no speeds."""
     tasks: Bounds = None
     """Number of tasks; 100 by default."""
     robots: Bounds = None
@@ -50,7 +49,7 @@ class Generate:
     map: Annotated[str | None, optional("WIDTH-HEIGHT")] = None
     """Sides of the map in distance units; 100 by default."""
     workload: Bounds = None
-    """Work at a task, in work units; 20 by default, 10-30 for uniform. One number for taptc."""
+    """Work that a task takes, in work units; 20 by default, 10-30 for uniform. One number for taptc."""
     capacity: Annotated[str | None, optional("LOW-HIGH|half|random")] = None
     """Work a robot does per time unit: for uniform bounds, 1-3 by default; for taptc half (the first half of the
     robots has 2, the others 1; the default) or random (1 or 2)."""
@@ -62,13 +61,13 @@ class Generate:
     """Only taptc: latest deadline 250-300 (tight), twice that (slack), or either (mixed, the default)."""
 
 
-def generate_command(argv: Sequence[str]) -> None:
-    """Run `mrta-zoo generate` with these arguments.
+@takes_flags
+def generate_command(command: Generate) -> None:
+    """Draw the scenarios into the folder.
 
     Raises:
         MrtaError: if an option cannot be used, or the folder cannot be written.
     """
-    command = parse(Generate, argv, "generate")
     if command.count < 1:
         raise ConfigError(f"count is {command.count}; expected a whole number >= 1")
     check_seed(command.seed)

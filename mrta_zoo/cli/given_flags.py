@@ -1,4 +1,4 @@
-"""Flags as they were given: what parsers of command lines let pass in silence, or don't help with, is refused."""
+"""Flags as they were given: refuses what tyro lets pass in silence, or complains about without a hint."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from difflib import SequenceMatcher
 from mrta_zoo.errors import ConfigError
 
 MOST_NAMED = 16
-"""Flags that a message names; those most like the one given come first."""
+"""The most flags that a message names. Those most like the given one come first."""
 _FLAG = re.compile(r"--[^=]+|-[a-zA-Z](?==|$)")  # what begins with one minus may be a negative number, or -inf
 
 
 def check_flags(arguments: Sequence[str], known: Mapping[str, str], positional: Sequence[str] = ()) -> None:
-    """Make sure that flags are known, given once, and not empty, unless help is asked for.
+    """Make sure that flags are known, given once and not empty, unless help is asked for.
 
     Args:
-        arguments: of the command; flags after ``--`` are none.
-        known: flags by how they may be spelt; ``--no-x`` is the flag ``--x``.
-        positional: what stands without a flag.
+        arguments: of the command. What follows ``--`` is not checked.
+        known: the flags by each of their spellings; ``--no-x`` is a spelling of ``--x``.
+        positional: names of the arguments that have no flag.
 
     Raises:
-        ConfigError: if one is not.
+        ConfigError: if a flag is unknown, given twice or empty.
     """
     if {"-h", "--help"} & set(arguments):
         return

@@ -1,4 +1,8 @@
-"""Help that is easy to read at any width of the terminal: tyro's, but with lines that end where it does, or earlier."""
+"""Help that is easy to read at any width of the terminal.
+
+It is tyro's. But tyro keeps line breaks of the source before lines that begin with a quote, bracket, dash or digit,
+does not wrap the description, and has no greatest width.
+"""
 
 from __future__ import annotations
 
@@ -21,15 +25,12 @@ from mrta_zoo.show.terminal.fold import help_width
 
 
 def description_of(command: Callable[..., object]) -> str:
-    """What help says of a command, a line for each paragraph."""
+    """The description of a command, one line per paragraph."""
     return _unfolded(docstring_parser.parse_from_object(command).description or "")
 
 
 def unfold_fields(of: Any) -> None:
-    """Give the fields of a dataclass, if it is one, their docstrings as metadata, from which tyro takes them first.
-
-    It would keep the source's line breaks in the docstrings themselves.
-    """
+    """Give the fields of a dataclass their docstrings without line breaks, as metadata, which tyro prefers."""
     if not is_dataclass(of):
         return
     texts = {each.arg_name: each.description for each in docstring_parser.parse_from_object(of).params}
@@ -47,7 +48,7 @@ def _unfolded(text: str) -> str:
 
 @contextmanager
 def readable_help() -> Iterator[None]:
-    """What is printed meanwhile is made for `help_width` columns; lines that are longer still break between words."""
+    """Within it, help is printed in `help_width` columns. Lines that are still too long break between words."""
     stream, width, columns = sys.stdout, help_width(), os.environ.get("COLUMNS")
     os.environ["COLUMNS"] = str(width)
     printed = _Kept(stream)
@@ -64,7 +65,7 @@ def readable_help() -> Iterator[None]:
 
 
 class _Kept(StringIO):
-    """Keeps what is printed; to the one who prints it is the stream that it will go to."""
+    """Keeps what is printed, and looks like the stream that it will go to."""
 
     def __init__(self, stream: TextIO) -> None:
         super().__init__()

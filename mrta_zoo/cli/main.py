@@ -1,4 +1,4 @@
-"""The command line, ``mrta-zoo``: which command, and what becomes of errors. Commands are in `eval`.
+"""The command line, ``mrta-zoo``: the table of commands, and how it ends. Each command has a module of its own.
 
 Exit codes: 0, 2 for what the user can put right (one sentence on standard error, no traceback), 130 after Ctrl-C.
 """
@@ -8,8 +8,10 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
+from importlib import import_module
+from typing import NamedTuple
 
 from mrta_zoo import __version__
 from mrta_zoo.cli.streams import fit_streams
@@ -19,108 +21,51 @@ from mrta_zoo.io.paths import check_no_url
 from mrta_zoo.show.terminal.fold import fold, help_width, spelt_out
 from mrta_zoo.wording import is_utf8
 
-Command = Callable[[list[str]], None]
-"""Runs a command with the arguments that follow its name."""
-
 NO_MEMORY = "not enough memory for this command; expected a smaller mission, or lower numbers in its options"
 USER_ERROR, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
 
-
-# Imports are inside, so that `mrta-zoo --help` is instant and heuristics need no torch.
-def _solve(argv: list[str]) -> None:
-    from mrta_zoo.cli.commands import solve_command
-
-    solve_command(argv)
+Need = tuple[str, str] | tuple[str, str, Sequence[str]]
+"""What a command needs to be installed, as `require` takes it."""
 
 
-def _eval(argv: list[str]) -> None:
-    from mrta_zoo.cli.commands import eval_command
+class Command(NamedTuple):
+    """A command NAME, which is the function ``NAME_command`` of the module ``mrta_zoo.cli.NAME``.
 
-    eval_command(argv)
+    Attributes:
+        summary: what `mrta-zoo --help` says about it.
+        needs: the extras that it cannot do without.
+    """
 
+    summary: str
+    needs: Sequence[Need] = ()
 
-def _generate(argv: list[str]) -> None:
-    from mrta_zoo.cli.generate import generate_command
-
-    generate_command(argv)
-
-
-def _step(argv: list[str]) -> None:
-    from mrta_zoo.cli.step import step_command
-
-    step_command(argv)
-
-
-def _compare(argv: list[str]) -> None:
-    from mrta_zoo.cli.compare import compare_command
-
-    compare_command(argv)
+    def run(self, name: str, argv: list[str]) -> None:
+        """Run it with the arguments that follow its name."""
+        for need in self.needs:
+            require(*need)
+        # Imported here, so that `mrta-zoo --help` is instant and heuristics need no torch.
+        getattr(import_module(f"mrta_zoo.cli.{name}"), f"{name}_command")(argv)
 
 
-def _replay(argv: list[str]) -> None:
-    from mrta_zoo.cli.replay import replay_command
-
-    replay_command(argv)
-
-
-def _train(argv: list[str]) -> None:
-    require("torch", "training", ("scipy", "filelock"))
-    from mrta_zoo.cli.train import train_command
-
-    train_command(argv)
-
-
-def _reproduce(argv: list[str]) -> None:
-    require("report", "the report")
-    from mrta_zoo.cli.reproduce import reproduce_command
-
-    reproduce_command(argv)
-
-
-def _converge(argv: list[str]) -> None:
-    require("report", "the figure")
-    from mrta_zoo.cli.converge import converge_command
-
-    converge_command(argv)
-
-
-def _ablate(argv: list[str]) -> None:
-    require("torch", "training")
-    require("report", "the report")
-    from mrta_zoo.cli.ablate import ablate_command
-
-    ablate_command(argv)
-
-
-def _sharing(argv: list[str]) -> None:
-    require("torch", "training")
-    require("report", "the report")
-    from mrta_zoo.cli.sharing import sharing_command
-
-    sharing_command(argv)
-
-
-def _demo(argv: list[str]) -> None:
-    from mrta_zoo.cli.commands import demo_command
-
-    demo_command(argv)
-
-
-COMMANDS: dict[str, tuple[str, Command]] = {
-    "solve": ("plan one mission: who does which task when", _solve),
-    "eval": ("compare methods on a folder of cases, or on the built-in suite", _eval),
-    "step": ("go through an episode one decision at a time, and choose otherwise", _step),
-    "compare": ("find where two methods part on a mission, and what it costs", _compare),
-    "generate": ("draw random scenarios into a folder of cases", _generate),
-    "replay": ("make a page that replays an episode in a browser, or two side by side", _replay),
-    "train": ("train a policy by REINFORCE", _train),
-    "reproduce": ("run the experiments of the CapAM paper and write a report", _reproduce),
-    "converge": ("measure plan quality against planning time, and draw it", _converge),
-    "ablate": ("train variants that differ in one thing each, and compare them", _ablate),
-    "sharing": ("train one policy for all robots, one by kind and one for each, and compare them", _sharing),
-    "demo": ("see it all at work, in a few minutes", _demo),
+TRAINING: Need = ("torch", "training", ("scipy", "filelock"))
+REPORT: Need = ("report", "the report")
+COMMANDS = {
+    "solve": Command("plan one mission: who does which task when"),
+    "eval": Command("compare methods on a folder of cases, or on a built-in suite"),
+    "step": Command("go through an episode one decision at a time, and choose differently"),
+    "compare": Command("find where two methods part on a mission, and what that costs"),
+    "generate": Command("draw random scenarios into a folder of cases"),
+    "replay": Command("make a page that replays an episode in a browser, or two side by side"),
+    "train": Command("train a policy by REINFORCE", [TRAINING]),
+    "reproduce": Command("run the experiments of the CapAM paper and write a report", [REPORT]),
+    "converge": Command("measure plan quality against planning time, and draw it", [REPORT]),
+    "ablate": Command("train variants that differ in one thing each, and compare them", [TRAINING, REPORT]),
+    "sharing": Command(
+        "train one policy for all robots, one per kind, and one per robot, and compare them", [TRAINING, REPORT]
+    ),
+    "demo": Command("see everything at work, in a few minutes"),
 }
-"""Each command with what `mrta-zoo --help` says of it. To add one, give it an entry."""
+"""The commands. To add one: a row here, and a module of its name."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -185,7 +130,7 @@ def _dispatch(arguments: list[str]) -> int:
     elif name == "--version":
         print(f"mrta-zoo {__version__}")
     elif name in COMMANDS:
-        COMMANDS[name][1](rest)
+        COMMANDS[name].run(name, rest)
     else:
         kind = "option" if name.startswith("-") else "command"
         print(f"error: there is no {kind} {name!r}; expected one of {', '.join(COMMANDS)}", file=sys.stderr)
@@ -211,7 +156,7 @@ def _check(argument: str) -> None:
 
 def _help() -> str:
     column = max(map(len, COMMANDS)) + 2
-    commands = "\n".join(f"  {name:<{column}}{summary}" for name, (summary, _) in COMMANDS.items())
+    commands = "\n".join(f"  {name:<{column}}{command.summary}" for name, command in COMMANDS.items())
     text = (
         "usage: mrta-zoo COMMAND [options]\n\n"
         "Multi-robot task allocation: robots share tasks that have places, workloads and deadlines.\n\n"

@@ -1,21 +1,20 @@
-"""The command ``mrta-zoo replay``: its flags, and where the episodes come from."""
+"""The command ``mrta-zoo replay``."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated
 
 from tyro.conf import Positional, arg
 
-from mrta_zoo.cli.commands import METHOD_HELP, PlanningFlags, agent_file, policy_files
-from mrta_zoo.cli.flags import names, optional, parse
-from mrta_zoo.cli.plan_files import PLAN, TRACE, check_name, is_episode, named, read_episode
-from mrta_zoo.debug.recorder import record
+from mrta_zoo.cli.flags import names, optional, takes_flags
+from mrta_zoo.cli.methods import METHOD_HELP, PLAN, TRACE, files_of_methods, read_any_trace
+from mrta_zoo.cli.planning import PlanningFlags
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io import read_scenario, read_trace
 from mrta_zoo.io.destination import check_outputs
+from mrta_zoo.io.files import agent_file
 from mrta_zoo.io.json_format import json_kind
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.policies.cpu_threads import cpu_threads
@@ -31,8 +30,8 @@ DEFAULT = "capam-plus"
 class Replay:
     """Make a page that replays an episode in a browser, or two of the same scenario side by side.
 
-    Map with a time slider, who does what when, completion over time, and at each decision the tasks there were, with
-    the policy's probabilities. One file, which needs no network.
+    The page has a map with a time slider, a chart of who does what when, completion over time, and for each decision
+    the tasks to choose from with the policy's probabilities. It is one file, and needs no network.
 
     For example:
       mrta-zoo replay group1/r11a7i00.txt --policy capam-plus,nearest
@@ -41,10 +40,10 @@ class Replay:
     """
 
     source: Annotated[Positional[Path], arg(metavar="SCENARIO|PLAN.json|TRACE.json")]
-    """A mission: a TAPTC task file, or a scenario in .json or .csv. Or an episode: a trace, or a plan (with
+    """A mission (a TAPTC task file, or a scenario in .json or .csv), or an episode (a trace, or a plan together with
     --scenario)."""
     scenario: Annotated[Path | None, optional("SCENARIO")] = None
-    """The mission that a plan was made for."""
+    """The mission that the plan was made for."""
     agents: Annotated[Path | None, optional("AGENTFILE")] = None
     """The robots: a TAPTC agent file, or .csv. Without it they are with the tasks or, for TAPTC, in agent/ beside
     them."""
@@ -53,41 +52,38 @@ class Replay:
         arg(
             metavar="METHOD[,METHOD]",
             help_behavior_hint="",
-            help=f"Who decides; {DEFAULT} by default, for a mission. Two are shown side by side, as are an episode and "
-            f"a method. A .json plan or trace, or a method. {METHOD_HELP}",
+            help=f"Who decides: a .json plan or trace, or a method; for a mission {DEFAULT} by default. Two are shown "
+            f"side by side, as are an episode and a method. {METHOD_HELP}",
         ),
     ] = None
     out: Annotated[Path, arg(metavar="PAGE.html")] = Path("replay.html")
-    """Where to write the page."""
+    """The file for the page."""
     planning: Annotated[PlanningFlags, arg(name="")] = field(default_factory=PlanningFlags)
 
 
-def replay_command(argv: Sequence[str]) -> None:
-    """Run `mrta-zoo replay` with these arguments.
+@takes_flags
+def replay_command(command: Replay) -> None:
+    """Play the episodes and write the page.
 
     Raises:
         MrtaError: if an option cannot be used, a file cannot be read or written, or a method fails.
     """
-    command = parse(Replay, argv, "replay")
     kind = json_kind(command.source)
     chosen = names(command.policy, "policy") if command.policy is not None else [DEFAULT]
     if command.policy is None and kind in (PLAN, TRACE):
         chosen = []
-    files = {f"the file {name}": Path(name) for name in chosen if is_episode(name)}
-    for name in chosen:
-        files |= policy_files(name)
     inputs = {
         "the source": command.source,
         "--scenario": command.scenario,
         "the agent file": agent_file(command.scenario or command.source, command.agents),
     }
-    check_outputs({"--out": command.out}, {**inputs, **files})
+    check_outputs({"--out": command.out}, {**inputs, **files_of_methods(chosen)})
     sides = len(chosen) + (kind in (PLAN, TRACE))
     if sides > MOST_SIDES:
         raise ConfigError(f"that makes {sides} episodes; expected {MOST_SIDES} at most, side by side")
     scenario, given = _source(command, kind)
     with preparing("plays the episodes"), cpu_threads(command.planning.threads):
-        traces = [*given, *(_episode(scenario, name, command.planning) for name in chosen)]
+        traces = [*given, *(command.planning.episode(name, scenario) for name in chosen)]
     command.planning.warn_unused([*chosen, *[str(command.source)] * (kind in (PLAN, TRACE))], "mask_rule")
     with Outputs() as outputs:
         outputs.write("page", command.out, lambda path: write_replay(traces, path))
@@ -100,7 +96,7 @@ def replay_command(argv: Sequence[str]) -> None:
 
 
 def _source(command: Replay, kind: str) -> tuple[Scenario, list[Trace]]:
-    """The mission, and its episode if the source is one."""
+    """The mission, and the episode if the source is one."""
     if kind == TRACE:
         for flag, path in (("--scenario", command.scenario), ("--agents", command.agents)):
             if path is not None:
@@ -113,23 +109,7 @@ def _source(command: Replay, kind: str) -> tuple[Scenario, list[Trace]]:
                 f"{command.source} is a plan, which does not hold its scenario; expected --scenario SCENARIO"
             )
         scenario = read_scenario(command.scenario, command.agents)
-        return scenario, [_of_file(command.source, scenario, command.planning)]
+        return scenario, [read_any_trace(command.source, scenario, command.planning.mask_rule)]
     if command.scenario is not None:
         raise ConfigError(f"--scenario is given, and {command.source} is no plan; expected a plan, or no --scenario")
     return read_scenario(command.source, command.agents), []
-
-
-def _episode(scenario: Scenario, name: str, planning: PlanningFlags) -> Trace:
-    """What a method, or a file of it, makes of the scenario."""
-    if is_episode(name):
-        return _of_file(Path(name), scenario, planning)
-    return record(scenario, name, **asdict(planning))
-
-
-def _of_file(path: Path, scenario: Scenario, planning: PlanningFlags) -> Trace:
-    episode = read_episode(path)
-    if isinstance(episode, Trace):
-        return episode
-    check_name(path, episode, scenario)
-    with named(path):
-        return Trace.of_plan(scenario, episode, planning.mask_rule)

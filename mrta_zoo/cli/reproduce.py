@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
 from tyro.conf import arg
 
-from mrta_zoo.cli.case_choice import read_all, shown_cases
-from mrta_zoo.cli.flags import names, optional, parse
+from mrta_zoo.cli.cases import read_all, shown_cases
+from mrta_zoo.cli.flags import names, optional, takes_flags
 from mrta_zoo.eval.experiment import resumable
 from mrta_zoo.eval.report.files import publish
 from mrta_zoo.eval.reproduce.experiment import reproduce
@@ -49,13 +48,13 @@ class Reproduce:
 
 
 @resumable()
-def reproduce_command(argv: Sequence[str]) -> None:
-    """Run `mrta-zoo reproduce` with these arguments.
+@takes_flags
+def reproduce_command(command: Reproduce) -> None:
+    """Run the methods and publish the report.
 
     Raises:
         MrtaError: if an option cannot be used, a file cannot be read or written, or a method fails.
     """
-    command = parse(Reproduce, argv, "reproduce")
     report = reproduce(
         command.out,
         read_all(command.cases),

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
 from tyro.conf import arg
 
-from mrta_zoo.cli.flags import names, parse
+from mrta_zoo.cli.flags import names, takes_flags
 from mrta_zoo.eval.experiment import resumable
 from mrta_zoo.eval.report.files import publish
 from mrta_zoo.eval.studies.sharing.design import QUESTIONS, USUAL, sharing
@@ -51,13 +50,13 @@ class Share:
 
 
 @resumable()
-def sharing_command(argv: Sequence[str]) -> None:
-    """Run `mrta-zoo sharing` with these arguments.
+@takes_flags
+def sharing_command(command: Share) -> None:
+    """Train the arms and publish the report.
 
     Raises:
         MrtaError: if an option cannot be used, a file cannot be read or written, or training diverges.
     """
-    command = parse(Share, argv, "sharing")
     design = sharing(
         names(command.only, "only", "questions", "episodes,decisions"),
         command.seeds,

@@ -1,13 +1,10 @@
-"""The command ``mrta-zoo step``: its flags, and where the episode comes from."""
+"""The command ``mrta-zoo step``."""
 
 from __future__ import annotations
 
 import os
-import signal
 import sys
-import threading
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import nullcontext
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Annotated
@@ -15,9 +12,10 @@ from typing import Annotated
 import numpy as np
 from tyro.conf import Positional, arg
 
-from mrta_zoo.cli.commands import METHOD_HELP, PlanningFlags
-from mrta_zoo.cli.flags import optional, parse
-from mrta_zoo.cli.plan_files import read_any_plan
+from mrta_zoo.cli.flags import optional, takes_flags
+from mrta_zoo.cli.hangups import hangups_raised
+from mrta_zoo.cli.methods import METHOD_HELP
+from mrta_zoo.cli.planning import PlanningFlags
 from mrta_zoo.debug.advisors import Advisor, make_advisor
 from mrta_zoo.debug.session import Session
 from mrta_zoo.debug.stepper import Stepper
@@ -40,12 +38,12 @@ DEFAULT = "capam-plus"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
-    """Go through an episode one decision at a time, back and forth, and choose otherwise.
+    """Go through an episode one decision at a time, back and forth, and choose differently.
 
     Shows whose turn it is, and every task as that robot sees it: distance, travel, finish, slack, why it may not be
-    chosen, the policy's probability, who else could do it; at the end also the cost (Eq. 1 of the paper: the sum of
-    finish / deadline over the tasks missed). Enter takes the policy's choice, a name or number another task; ? lists
-    the commands. Works over ssh, in 80 x 24.
+    chosen, the policy's probability, and who else could do it; at the end also the cost (Eq. 1 of the paper: the sum of
+    finish / deadline over the tasks missed). Enter takes the policy's choice, the name or number of a task takes that
+    task, and ? lists the commands. A terminal of 80 x 24 is enough, also over ssh.
 
     For example:
       mrta-zoo step group1/r11a7i00.txt
@@ -54,7 +52,7 @@ class Step:
     """
 
     scenario: Annotated[Positional[Path | None], arg(metavar="[SCENARIO]", help_behavior_hint="")] = None
-    """The mission: a TAPTC task file, or a scenario in .json or .csv. Without it one like the published cases is drawn
+    """The mission: a TAPTC task file, or a scenario in .json or .csv. Without it, one like the published cases is drawn
     with --seed."""
     agents: Annotated[Path | None, optional("AGENTFILE")] = None
     """The robots: a TAPTC agent file, or .csv. Without it they are in SCENARIO or, for TAPTC, in agent/ beside it."""
@@ -63,25 +61,26 @@ class Step:
         arg(
             metavar="METHOD",
             help_behavior_hint="",
-            help=f"Whose advice to hear; {DEFAULT} by default, or what a session had. A .json plan or trace, {NOBODY}, "
-            f"or a method. Methods other than policies plan once, at the start. {METHOD_HELP}",
+            help=f"Who advises: a .json plan or trace, a method, or {NOBODY}; by default {DEFAULT}, or whoever advised "
+            f"the session. Methods that are not policies plan once, at the start. {METHOD_HELP}",
         ),
     ] = None
     script: Annotated[str | None, optional("FILE|-")] = None
-    """Commands, one a line, in place of a terminal; - is standard input. Ends with code 2 at the first that fails."""
+    """Take commands from this file, one per line, instead of a terminal; - is standard input. The first command that
+    fails ends the script with exit code 2."""
     session: Annotated[Path | None, optional("SESSION.json")] = None
-    """Go on with the session, or any trace, in this file, if there is one; and save there on leaving. A scenario given
-    besides must be the session's."""
+    """Continue the session, or any trace, in this file if it exists, and save there on leaving. If a scenario is given,
+    too, it must be the session's."""
     planning: Annotated[PlanningFlags, arg(name="")] = field(default_factory=PlanningFlags)
 
 
-def step_command(argv: Sequence[str]) -> None:
-    """Run `mrta-zoo step` with these arguments.
+@takes_flags
+def step_command(command: Step) -> None:
+    """Step at the terminal or by script, and save the session.
 
     Raises:
         MrtaError: if an option cannot be used, a file cannot be read or written, or a command of a script fails.
     """
-    command = parse(Step, argv, "step")
     if command.scenario is None and command.agents is not None:
         raise ConfigError("--agents is given without a scenario; expected SCENARIO --agents AGENTFILE")
     script = _script(command)
@@ -103,31 +102,8 @@ def step_command(argv: Sequence[str]) -> None:
                     print(f"saved; go on with: mrta-zoo step --session {session.path}")
 
 
-@contextmanager
-def hangups_raised() -> Iterator[None]:
-    """A lost connection or a request to end raises SystemExit meanwhile, so that what is to be saved is saved.
-
-    Signals that somebody else handles, or ignores, are left to them, and in a thread, which cannot handle any, all are.
-    """
-
-    def end(number: int, _: object) -> None:
-        sys.exit(128 + number)
-
-    numbers = [getattr(signal, name) for name in ("SIGHUP", "SIGTERM") if hasattr(signal, name)]
-    mine = [number for number in numbers if signal.getsignal(number) == signal.SIG_DFL]
-    if threading.current_thread() is not threading.main_thread():
-        mine = []
-    for number in mine:
-        signal.signal(number, end)
-    try:
-        yield
-    finally:
-        for number in mine:
-            signal.signal(number, signal.SIG_DFL)
-
-
 def _begin(command: Step) -> Session:
-    """The session as the flags have it begin."""
+    """The session, new or continued, as the flags say."""
     resumed: Trace | None = None
     if command.session and os.path.exists(command.session) and os.path.getsize(command.session):
         resumed = read_trace(command.session)
@@ -145,7 +121,7 @@ def _begin(command: Step) -> Session:
         if resumed is None:
             scenario = _scenario(command)
             policy = DEFAULT if command.policy is None else command.policy
-            advisor = _advisor(scenario, policy, command.planning)
+            advisor = None if policy == NOBODY else command.planning.advisor(policy, scenario)
             command.planning.warn_unused([policy], "mask_rule")
             rule = {"mask_rule": command.planning.mask_rule} if command.planning.mask_rule else {}
             return Session(Stepper(scenario, advisor, **rule), advisor, command.session)
@@ -160,19 +136,10 @@ def _scenario(command: Step) -> Scenario:
     return TaptcGenerator()(np.random.default_rng(seed), f"drawn with seed {seed}")
 
 
-def _advisor(scenario: Scenario, name: str, planning: PlanningFlags) -> Advisor | None:
-    if name == NOBODY:
-        return None
-    plan = read_any_plan(Path(name), scenario)
-    if plan is not None:
-        return make_advisor(scenario, plan, mask_rule=planning.mask_rule)
-    return make_advisor(scenario, name, **asdict(planning))
-
-
 def _advisor_again(trace: Trace, name: str | None, planning: PlanningFlags) -> Advisor | None:
-    """The one that the flags name, or else the one that a session had, as it was."""
+    """The advisor that the flags name, or else the one that the session had, with its options."""
     if name is not None:
-        return _advisor(trace.scenario, name, planning)
+        return None if name == NOBODY else planning.advisor(name, trace.scenario)
     if trace.method not in method_names():
         return None
     options = asdict(planning) | {"mask_rule": trace.mask_rule, "decode": trace.decode or planning.decode}
@@ -182,7 +149,7 @@ def _advisor_again(trace: Trace, name: str | None, planning: PlanningFlags) -> A
 
 
 def _script(command: Step) -> tuple[str, list[str]] | None:
-    """What messages call the script, and its lines; None to ask at the terminal."""
+    """The script's name in messages, and its lines; None if commands come from a terminal."""
     if command.script is not None and command.script != "-":
         return command.script, read_text(command.script, ConfigError, "commands, one a line").split("\n")
     if sys.stdin is None:

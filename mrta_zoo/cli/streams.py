@@ -1,71 +1,57 @@
-"""Standard output and error that take any text, as long as a command runs."""
+"""Standard output and error that accept any text while a command runs."""
 
 from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
-from functools import partial
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from threading import Lock
 from typing import Any
 
 _lock = Lock()
-_fit: dict[Any, tuple[int, Callable[[], None]]] = {}
-"""Each stream that was made fit: how many commands use it, and what makes it as it was."""
+_commands = 0
+"""How many commands run now, each in a thread of its own."""
+_fitted = ExitStack()
+"""Restores the streams."""
 
 
 @contextmanager
 def fit_streams() -> Iterator[None]:
-    """Standard output and error are fit for any text meanwhile, also where the shell has closed them.
+    """Within it, standard output and error accept any text, even if the shell has closed them.
 
-    Several threads may be in this at a time; the streams are as they were when the last has left it.
+    Several threads may be within it at once. When the last one leaves, the streams are as they were.
     """
+    global _commands
     with _lock:
-        streams = [_take("stdout"), _take("stderr")]
+        if _commands == 0:
+            _fitted.enter_context(_fit("stdout"))
+            _fitted.enter_context(_fit("stderr"))
+        _commands += 1
     try:
         yield
     finally:
         with _lock:
-            for stream in streams:
-                _give_back(stream)
+            _commands -= 1
+            if _commands == 0:
+                _fitted.close()
 
 
-def _take(name: str) -> Any:
-    """The stream of that name, now fit."""
-    if (stream := getattr(sys, name)) in _fit:
-        users, restore = _fit[stream]
-    else:
-        users, stream, restore = 0, *_make_fit(name)
-    _fit[stream] = users + 1, restore
-    return stream
-
-
-def _give_back(stream: Any) -> None:
-    users, restore = _fit.pop(stream)
-    if users > 1:
-        _fit[stream] = users - 1, restore
-    else:
-        restore()
-
-
-def _make_fit(name: str) -> tuple[Any, Callable[[], None]]:
-    """The stream of that name, or what stands in for it, and what makes it as it was."""
+@contextmanager
+def _fit(name: str) -> Iterator[None]:
     stream = getattr(sys, name)
     if stream is None:  # by >&-
-        stand_in = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
-        setattr(sys, name, stand_in)
-        return stand_in, partial(_close, name, stand_in)
-    if hasattr(stream, "reconfigure"):
-        restore = partial(_reconfigure, stream, stream.errors)
+        with open(os.devnull, "w", encoding="utf-8") as stand_in:
+            setattr(sys, name, stand_in)
+            yield
+            setattr(sys, name, None)
+    elif hasattr(stream, "reconfigure"):
+        errors = stream.errors
         _reconfigure(stream, "replace")  # what the terminal's encoding lacks must not end in a traceback
-        return stream, restore
-    return stream, lambda: None
-
-
-def _close(name: str, stand_in: Any) -> None:
-    setattr(sys, name, None)
-    stand_in.close()
+        yield
+        _reconfigure(stream, errors)
+    else:
+        yield
 
 
 def _reconfigure(stream: Any, errors: str | None) -> None:

@@ -12,7 +12,7 @@ import torch
 import tyro
 
 from mrta_zoo.bounds import MAX_THREADS, check_threads
-from mrta_zoo.cli.flags import parse_flags
+from mrta_zoo.cli import flags
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.policies.cpu_threads import cpu_threads
@@ -122,7 +122,7 @@ def parse(argv: Sequence[str]) -> TrainCommand:
     if "--resume" in argv and out and not {"--help", "-h"} & set(argv) and _peek(argv, "--preset") is None:
         config = checkpoint.saved_config(Path(out))
     default = TrainCommand(preset=preset, out=Path(out) if out else tyro.MISSING, config=config)
-    return parse_flags(TrainCommand, argv, "mrta-zoo train", default=default)
+    return flags.parse(TrainCommand, argv, "train", default=default)
 
 
 def _peek(argv: Sequence[str], flag: str) -> str | None:

@@ -1,4 +1,4 @@
-"""What there is to be seen of a stepper, as rows of text, and which of them a page shows."""
+"""The tables of a stepper: tasks, robots, the log of decisions, and help."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Literal
 
 from rich.cells import cell_len
 
-from mrta_zoo.debug.called import called, cells, headings, shortened
+from mrta_zoo.debug.naming import cells, headings, label, shortened
 from mrta_zoo.debug.outlook import SortKey
 from mrta_zoo.debug.percent import percent
 from mrta_zoo.debug.stepper import Stepper
@@ -23,13 +23,13 @@ Subject = Literal["tasks", "robots", "log", "help"]
 
 @dataclass(slots=True)
 class View:
-    """What is looked at.
+    """Which table the user looks at, and how.
 
     Attributes:
         subject: the table.
-        page: of it, from 0.
-        robot: whose tasks; None for those of the robot that is to choose.
-        order: of the tasks.
+        page: its page, from 0.
+        robot: the robot whose view of the tasks is shown; None for the robot that chooses next.
+        order: how the tasks are sorted.
     """
 
     subject: Subject = "tasks"
@@ -43,9 +43,9 @@ class Line:
     """A line of a table.
 
     Attributes:
-        cells: its text.
+        cells: the text of each cell; the last one is a note.
         tone: "advised", "made", "plain", or "faint" for what may not be chosen or is over.
-        name: the one in its last cell that may be shortened, if any.
+        name: a name within the note, which may be shortened; empty if there is none.
     """
 
     cells: tuple[str, ...]
@@ -53,7 +53,13 @@ class Line:
     name: str = ""
 
     def note(self, most: int, least: int, among: Sequence[str] = ()) -> str:
-        """Its last cell, in so many columns if that can be had by shortening the name, though not below `least`."""
+        """The note, its name shortened to make it fit into so many columns.
+
+        Args:
+            most: columns that there are for the note.
+            least: columns that the name keeps in any case.
+            among: names from which this one must be told apart.
+        """
         text = self.cells[-1]
         room = cell_len(self.name) - (cell_len(text) - most)
         return text.replace(self.name, shortened(self.name, max(room, least), among), 1) if self.name else text
@@ -61,14 +67,14 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Listing:
-    """A table, whose last column is text.
+    """A table whose last column holds notes.
 
     Attributes:
-        title: above it.
-        columns: their names.
-        left: those whose text begins at the left.
+        title: the line above it.
+        columns: the headings.
+        left: the headings of the columns that are aligned at the left.
         rows: the lines.
-        spare: the columns to leave out, one after the other, where there is no room.
+        spare: the columns to leave out where there is no room, the most dispensable first.
     """
 
     title: str
@@ -79,12 +85,12 @@ class Listing:
 
 
 def listing(stepper: Stepper, view: View, commands: Sequence[tuple[str, str]]) -> Listing:
-    """The table that is looked at.
+    """The table that the user looks at.
 
     Args:
-        stepper: as it stands.
-        view: what is looked at.
-        commands: each with what it does, for help.
+        stepper: the episode.
+        view: which table, and how.
+        commands: how each command is typed and what it does, for help.
     """
     if view.subject == "help":
         return Listing("commands", ("command", "what it does"), ("command", "what it does"), [*map(Line, commands)])
@@ -164,7 +170,7 @@ def _log(stepper: Stepper) -> Listing:
         finish = None if task is None else float(mission.finish_if[decision.robot, task])
         words = "" if choice.advice is None else f"the policy's choice was task {scenario.task_name(choice.advice)}"
         row = (
-            str(decision.index), digits.time(decision.time), called(decision.robot, scenario.robot_names),
+            str(decision.index), digits.time(decision.time), label(decision.robot, scenario.robot_names),
             "stays" if task is None else scenario.task_name(task),
             "" if finish is None else digits.time(finish),
             "" if finish is None or task is None else digits.time(scenario.deadline[task] - finish), words,
@@ -183,5 +189,5 @@ def _named(index: int | None, names: Sequence[str]) -> str:
 
 
 def _texts(headings: tuple[str, ...], names: Sequence[str]) -> tuple[str, ...]:
-    """The columns that hold text: those without a heading, and the last of these if there are names."""
+    """The columns that are aligned at the left: those without a heading, and the last of these if there are names."""
     return ("", *headings[-1:]) if names else ("",)

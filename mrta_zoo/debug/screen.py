@@ -9,7 +9,7 @@ from rich.console import Console, Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
-from mrta_zoo.debug.called import shortened
+from mrta_zoo.debug.naming import shortened
 from mrta_zoo.debug.pages import Listing
 from mrta_zoo.debug.session import Session
 from mrta_zoo.digits import rough
@@ -19,18 +19,25 @@ from mrta_zoo.show.terminal.fold import clipped
 from mrta_zoo.show.view import Digits
 
 AROUND = 11
-"""Lines of a screen besides the rows of the table: the header, the table's title, head and foot, message and prompt."""
+"""Lines of a screen besides the table's rows: header, title, head and foot of the table, message and prompt."""
 LEAST_ROWS = 3
 BETWEEN, TIGHT = 2, 1
-"""Columns between two of a table, and where there is no room for that."""
+"""Blanks between two columns of a table, and the same where there is no room."""
 STYLES = {"advised": "bold green", "made": "yellow", "plain": "", "faint": "bright_black"}
 NEXT_SHOWN = 8
 NAME, LEAST_NAME, LEAST_NOTE = 10, 6, 12
-"""Columns that names keep until those in notes are cut, that all names keep, and that notes keep."""
+"""Width that names keep until names in notes are cut, that all names keep, and that notes keep."""
 
 
 def screen(session: Session, rows: int, width: int, message: str = "") -> Group:
-    """Everything there is to be seen, in so many columns and with so many rows of the table that is looked at."""
+    """The whole screen: header, table and message.
+
+    Args:
+        session: what to show.
+        rows: of the table, on one page.
+        width: of the screen, in columns.
+        message: the last line.
+    """
     parts: list[RenderableType] = [*header(session, width), Text()]
     parts += table(session, rows, width)
     parts.append(Text(clipped(message, width), style="bold"))
@@ -38,12 +45,12 @@ def screen(session: Session, rows: int, width: int, message: str = "") -> Group:
 
 
 def fit(console: Console) -> int:
-    """How many rows of a table a screen has room for."""
+    """The number of rows of a table that a screen has room for."""
     return max(console.height - AROUND, LEAST_ROWS)
 
 
 def header(session: Session, width: int) -> list[RenderableType]:
-    """Four lines: the mission, how it stands, who is to choose and what its policy thinks, and who is next."""
+    """Four lines: the mission, its state, who chooses and what the policy advises, and who is next."""
     stepper = session.stepper
     mission, scenario = stepper.mission, stepper.scenario
     count = np.bincount(mission.status, minlength=len(Status))
@@ -67,7 +74,7 @@ def header(session: Session, width: int) -> list[RenderableType]:
 
 
 def table(session: Session, rows: int, width: int) -> list[RenderableType]:
-    """The table that is looked at: its title, a page of it, and which page that is."""
+    """The table that the user looks at: its title, a page of its rows, and which page that is."""
     listing, view = session.listing(), session.view
     pages = max(-(-len(listing.rows) // rows), 1)
     view.page = min(view.page, pages - 1)
@@ -93,11 +100,10 @@ def table(session: Session, rows: int, width: int) -> list[RenderableType]:
 
 
 def column_widths(listing: Listing, width: int) -> tuple[dict[int, int], int]:
-    """The columns that there is room for with their widths, and the room between two.
+    """The widths of the columns that there is room for, and the blanks between two columns.
 
-    Numbers have what they need. Where there is no room, first names are shortened, those in notes, too; then columns
-    are left out, those that can be spared first; then the notes in the last column are cut. At the very least there
-    is what the row is about.
+    Numbers are never cut. Where there is no room, first names are shortened, those in notes, too; then columns are left
+    out, the most dispensable first; then the notes in the last column are cut. What the row is about always stays.
     """
     needed = {
         index: max(cell_len(cell) for cell in (column, *(row.cells[index] for row in listing.rows)))
@@ -132,7 +138,7 @@ def column_widths(listing: Listing, width: int) -> tuple[dict[int, int], int]:
 
 
 def prompt(session: Session) -> str:
-    """What to ask for a command with."""
+    """The prompt for a command."""
     advice = session.stepper.advice
     if advice is None:
         return "? help, q quit > "
@@ -143,7 +149,7 @@ def prompt(session: Session) -> str:
 
 
 def _turn(session: Session, width: int) -> str:
-    """Who chooses, and what its policy thinks; what has no room is left out, beginning with the speed."""
+    """Who chooses, and what the policy advises. What has no room is left out, first the speed."""
     stepper = session.stepper
     robot, scenario, advice = stepper.robot, stepper.scenario, stepper.advice
     x, y = map(Digits.of(scenario).distance, stepper.mission.position[robot])
@@ -162,12 +168,12 @@ def _turn(session: Session, width: int) -> str:
 
 
 def _task(scenario: Scenario, task: int, most: int) -> str:
-    """A task's name in so many columns, or its number."""
+    """A task's name cut to so many columns, or its number."""
     return shortened(scenario.task_name(task), most, scenario.task_names) if scenario.task_names else f"task {task}"
 
 
 def _queue(session: Session, width: int) -> str:
-    """Who chooses after the acting robot, as many as there is room for."""
+    """The robots that choose after the acting one, as many as there is room for."""
     mission, scenario = session.stepper.mission, session.stepper.scenario
     digits = Digits.of(scenario)
     waiting = sorted(

@@ -1,16 +1,16 @@
-"""Commands that step through an episode, one a line: what a person types, and what scripts hold."""
+"""Commands that step through an episode, one per line: typed by a person, or read from a script."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NoReturn, get_args
+from typing import get_args
 
 from mrta_zoo.debug.advisors import Advisor, PolicyAdvisor
-from mrta_zoo.debug.called import find, found, numbers_count
+from mrta_zoo.debug.naming import DIGITS, find, identify, numbers_count
 from mrta_zoo.debug.outlook import SortKey
-from mrta_zoo.debug.pages import Listing, View, listing
+from mrta_zoo.debug.pages import Listing, Subject, View, listing
 from mrta_zoo.debug.stepper import Stepper
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io import read_trace
@@ -19,21 +19,70 @@ from mrta_zoo.show.view import Digits
 from mrta_zoo.trace import Choice
 from mrta_zoo.wording import counted
 
+_Run = Callable[["Session", str], str]
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """One command.
+
+    Attributes:
+        name: its name.
+        short: its abbreviation, one letter; empty if there is none.
+        argument: its argument, in capitals; in brackets and lower case if it is optional; empty if there is none.
+        summary: what it does.
+        run: does it, given the session and the argument ("" if absent), and returns a line that says what happened.
+    """
+
+    name: str
+    short: str
+    argument: str
+    summary: str
+    run: _Run
+
+    @property
+    def names_one(self) -> bool:
+        """Whether the argument is a task or a robot, whose name may contain blanks."""
+        return self.argument.strip("[]").lower() in ("task", "robot")
+
+    @property
+    def usage(self) -> str:
+        """How it is typed."""
+        return ", ".join(filter(None, (self.short, self.name))) + (f" {self.argument}" if self.argument else "")
+
+
+COMMANDS: list[Command] = []
+"""All commands, in the order in which help lists them."""
+
+
+def _command(summary: str, *, short: str = "", argument: str = "") -> Callable[[_Run], _Run]:
+    """Make a method of `Session` the command of its name."""
+
+    def add(run: _Run) -> _Run:
+        COMMANDS.append(Command(run.__name__, short, argument, summary, run))
+        return run
+
+    return add
+
 
 class Session:
-    """A stepper under the commands of somebody who looks at it.
+    """A stepper, the table that its user looks at, and the commands that change them.
 
     Args:
         stepper: where to begin.
-        advisor: whose advice a session that is loaded gets.
-        path: where `save` writes without a file of its own: a session's file, or else the first that it was saved to.
+        advisor: the advisor of sessions that are loaded later.
+        path: the file for `save` without an argument; None for the first file that the session is saved to.
 
     Attributes:
-        stepper: where one stands.
-        view: what one looks at.
-        over: whether one has left.
-        unsaved: choices of one's own since the last `save`.
+        stepper: the episode, and where the user is in it.
+        view: the table that the user looks at.
+        over: whether the user has left.
+        unsaved: number of the user's own choices since the last `save`.
     """
+
+    # Not the standard library's `cmd`: it prints, and asks for lines, by itself, splits them at the first character
+    # that no identifier has, and knows no arguments. Here the name of a task is a command, too, and terminal, script
+    # and tests decide where lines come from and answers go. Nor `shlex`: names may hold quotes and #.
 
     def __init__(self, stepper: Stepper, advisor: Advisor | None = None, path: Path | None = None) -> None:
         self.stepper, self._advisor, self.path = stepper, advisor, path
@@ -42,13 +91,13 @@ class Session:
         self.unsaved = 0
 
     def do(self, line: str) -> str:
-        """Carry out a command; an empty one is `follow`, and a task's name or number alone is `take`.
+        """Carry out a command. An empty line is `follow`, and a task's name or number alone is `take`.
 
         Returns:
-            What has come of it, in a line.
+            A line that says what happened.
 
         Raises:
-            MrtaError: if it cannot be done; nothing is changed then.
+            MrtaError: if it cannot be carried out; then nothing has changed.
         """
         command, argument = self._understood(line.strip())
         before = self.stepper.position
@@ -58,11 +107,11 @@ class Session:
         return said
 
     def listing(self) -> Listing:
-        """The table that is looked at."""
+        """The table that the user looks at."""
         return listing(self.stepper, self.view, [(each.usage, each.summary) for each in COMMANDS])
 
     def _understood(self, line: str) -> tuple[Command, str]:
-        """The command, and what follows it."""
+        """The command and its argument."""
         if not line:
             return _BY_NAME["follow"], ""
         names = self.stepper.scenario.task_names
@@ -84,52 +133,62 @@ class Session:
             raise ConfigError(f"the command is {line!r}; expected {expected}")
         return command, argument
 
-    # Each command is a function of the session and its argument, "" if there is none.
+    @_command("take the policy's choice, > in the table; as Enter alone")
     def follow(self, _: str) -> str:
         return self._chosen(self.stepper.follow)
 
+    @_command("take this task; as its name or number alone", argument="TASK")
     def take(self, task: str) -> str:
-        number = found(task, "task", self.stepper.scenario.task_names)
+        number = identify(task, "task", self.stepper.scenario.task_names)
         return self._chosen(lambda: self.stepper.take(number), own=True)
 
+    @_command("make the robot stay for good, as plans can (agents cannot)")
     def stay(self, _: str) -> str:
         return self._chosen(self.stepper.stay, own=True)
 
+    @_command("take back the last decision, or n of them", short="b", argument="[n]")
     def back(self, decisions: str) -> str:
         self.stepper.back(_number(decisions or "1", "decisions"))
         return self.where()
 
+    @_command("go on by 1 or n: as before (*), then as the policy chooses", short="f", argument="[n]")
     def forward(self, decisions: str) -> str:
         self.stepper.forward(_number(decisions or "1", "decisions"))
         return self.where()
 
+    @_command("go to this decision; goto 0 is the start", short="g", argument="DECISION")
     def goto(self, decision: str) -> str:
         self.stepper.go_to(_number(decision, "decision"))
         return self.where()
 
+    @_command("go on to this robot's next turn", short="j", argument="ROBOT")
     def jump(self, robot: str) -> str:
-        self.stepper.jump(found(robot, "robot", self.stepper.scenario.robot_names))
+        self.stepper.jump(identify(robot, "robot", self.stepper.scenario.robot_names))
         return self.where()
 
+    @_command("go on to the end", short="e")
     def end(self, _: str) -> str:
         self.stepper.finish()
         return self.where()
 
-    def next_page(self, _: str) -> str:
+    @_command("next page of the table", short="n")
+    def next(self, _: str) -> str:
         self.view.page += 1
         return ""
 
-    def previous_page(self, _: str) -> str:
+    @_command("previous page of the table", short="p")
+    def previous(self, _: str) -> str:
         self.view.page = max(self.view.page - 1, 0)
         return ""
 
+    @_command("the tasks, or those of this robot when it is next free", short="t", argument="[robot]")
     def tasks(self, robot: str) -> str:
-        number = found(robot, "robot", self.stepper.scenario.robot_names) if robot else None
+        number = identify(robot, "robot", self.stepper.scenario.robot_names) if robot else None
         if number is not None:
             self.stepper.outlook(number)  # there must be such a robot
-        self.view = View("tasks", robot=number, order=self.view.order)
-        return ""
+        return self._show("tasks", number)
 
+    @_command(f"the tasks sorted by {', '.join(get_args(SortKey))}", short="s", argument="ORDER")
     def sort(self, order: str) -> str:
         for known in get_args(SortKey):
             if order == known:
@@ -137,28 +196,26 @@ class Session:
                 return f"tasks by {order}"
         raise ConfigError(f"there is no order {order!r}; expected one of {', '.join(get_args(SortKey))}")
 
+    @_command("what every robot is doing", short="r")
     def robots(self, _: str) -> str:
-        self.view = View("robots", order=self.view.order)
-        return ""
+        return self._show("robots")
 
+    @_command("the decisions so far", short="l")
     def log(self, _: str) -> str:
-        self.view = View("log", order=self.view.order)
-        return ""
+        return self._show("log")
 
-    def help(self, _: str) -> str:
-        self.view = View("help", order=self.view.order)
-        return ""
-
+    @_command("save all decisions and this place as JSON", argument="[file]")
     def save(self, file: str) -> str:
         path = Path(file) if file else self.path
         if path is None:
             raise ConfigError("there is no file to save to yet; expected save FILE")
         if path.is_file() and json_kind(path) != "mrta_zoo.trace":
-            raise ConfigError(f"{path} is there already and is no session; expected the name of a new file, or of one")
+            raise ConfigError(f"{path} is there already and is no session; expected a new file, or a session's")
         self.stepper.save(path)
         self.path, self.unsaved = self.path or path, 0  # a copy does not move the session
         return f"{counted(len(self.stepper), 'decision')} saved to {path}"
 
+    @_command("go on with a saved session, or any trace", argument="FILE")
     def load(self, file: str) -> str:
         trace = read_trace(file)
         same = trace.scenario == self.stepper.scenario
@@ -168,12 +225,17 @@ class Session:
         self.path, self.unsaved = Path(file), 0
         return f"{counted(len(self.stepper), 'decision')} loaded; {self.where()}"
 
+    @_command("this list; also ?", short="h")
+    def help(self, _: str) -> str:
+        return self._show("help")
+
+    @_command("leave", short="q")
     def quit(self, _: str) -> str:
         self.over = True
         return ""
 
     def where(self) -> str:
-        """Where one stands, in a line."""
+        """Where the session is, in one line."""
         stepper, time = self.stepper, Digits.of(self.stepper.scenario).time
         if stepper.done:
             mission = stepper.mission
@@ -184,6 +246,10 @@ class Session:
             )
         robot = stepper.scenario.robot_name(stepper.robot)
         return f"decision {stepper.position}: {robot} chooses at {time(stepper.mission.time)}"
+
+    def _show(self, subject: Subject, robot: int | None = None) -> str:
+        self.view = View(subject, robot=robot, order=self.view.order)
+        return ""
 
     def _chosen(self, choose: Callable[[], Choice], own: bool = False) -> str:
         robot, index = self.stepper.robot, self.stepper.position
@@ -200,64 +266,11 @@ class Session:
         return f"decision {index}: {scenario.robot_name(robot)} {what}"
 
 
-@dataclass(frozen=True, slots=True)
-class Command:
-    """One command.
-
-    Attributes:
-        name: its name.
-        short: a letter for it, empty if there is none.
-        argument: what may follow, lower-case in brackets if it need not; empty if nothing may.
-        summary: what it does.
-        run: does it, and says what came of it.
-    """
-
-    name: str
-    short: str
-    argument: str
-    summary: str
-    run: Callable[[Session, str], str]
-
-    @property
-    def names_one(self) -> bool:
-        """Whether what follows is a task or a robot, whose name may hold blanks."""
-        return self.argument.strip("[]").lower() in ("task", "robot")
-
-    @property
-    def usage(self) -> str:
-        """How it is written."""
-        return ", ".join(filter(None, (self.short, self.name))) + (f" {self.argument}" if self.argument else "")
-
-
-COMMANDS: Sequence[Command] = (
-    Command("follow", "", "", "take the policy's choice, > in the table; as Enter alone", Session.follow),
-    Command("take", "", "TASK", "take this task; as its name or number alone", Session.take),
-    Command("stay", "", "", "let the robot stay for good, as a plan may (agents cannot)", Session.stay),
-    Command("back", "b", "[n]", "take back the last decision, or n of them", Session.back),
-    Command("forward", "f", "[n]", "on by 1 or n: as before (*), then as the policy chooses", Session.forward),
-    Command("goto", "g", "DECISION", "to this decision; goto 0 to the start", Session.goto),
-    Command("jump", "j", "ROBOT", "on to this robot's next turn", Session.jump),
-    Command("end", "e", "", "on to the end", Session.end),
-    Command("next", "n", "", "next page of the table", Session.next_page),
-    Command("previous", "p", "", "previous page of the table", Session.previous_page),
-    Command("tasks", "t", "[robot]", "tasks, of this robot when it is next free", Session.tasks),
-    Command("sort", "s", "ORDER", f"tasks by {', '.join(get_args(SortKey))}", Session.sort),
-    Command("robots", "r", "", "what every robot does", Session.robots),
-    Command("log", "l", "", "the decisions so far", Session.log),
-    Command("save", "", "[file]", "save all decisions and this place as JSON", Session.save),
-    Command("load", "", "FILE", "go on with a saved session, or any trace", Session.load),
-    Command("help", "h", "", "this list; also ?", Session.help),
-    Command("quit", "q", "", "leave", Session.quit),
-)
 _BY_NAME = {name: command for command in COMMANDS for name in (command.name, command.short) if name}
 _BY_NAME["?"] = _BY_NAME["help"]
 
 
 def _number(text: str, what: str) -> int:
-    if not text.isdecimal() or not text.isascii() or len(text) > 9:
-        _refuse(text, what)
+    if not text.isdecimal() or not text.isascii() or len(text) > DIGITS:
+        raise ConfigError(f"{what} is {text!r}; expected a whole number >= 0")
     return int(text)
-
-
-def _refuse(text: str, what: str) -> NoReturn:
-    raise ConfigError(f"{what} is {text!r}; expected a whole number >= 0")

@@ -1,24 +1,23 @@
-"""Stepping at a terminal, and by script."""
+"""Stepping at a terminal, and by a script."""
 
 from __future__ import annotations
 
 import contextlib
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from rich.console import Console, Group, RenderableType
 
-from mrta_zoo.debug.called import without_comment
 from mrta_zoo.debug.screen import fit, header, prompt, screen, table
 from mrta_zoo.debug.session import Session
 from mrta_zoo.errors import MrtaError
 
 SCRIPT_ROWS = 20
-"""Rows of a table that `show` prints by default."""
+"""Rows of a table that `show` prints unless it is given a number."""
 
 
 def interact(session: Session, console: Console) -> None:
-    """Show the session, ask for a command, carry it out, and so on until somebody leaves."""
+    """Show the session, ask for a command and carry it out, until the user leaves."""
     with contextlib.suppress(ImportError):
         import readline  # noqa: F401  (lets `input` edit the line, where there is such a module)
 
@@ -45,19 +44,19 @@ def interact(session: Session, console: Console) -> None:
 
 
 def run_script(session: Session, lines: Iterable[str], source: str, console: Console) -> None:
-    """Carry out commands, one a line, and print what comes of each; at the end, where that has led.
+    """Carry out commands, one per line, and print the result of each; at the end, print where that has led.
 
-    Empty lines and what follows a ``#`` that is no part of a name are passed over, so that the policy's choice is
-    written `follow`. Besides the commands of a session there is ``show [rows]``, which prints what a terminal would.
+    Comments, which begin with a ``#`` that is no part of a name, and empty lines are skipped, so that taking the
+    policy's choice must be written `follow`. ``show [rows]``, which only scripts have, prints what a terminal would.
 
     Args:
-        session: is stepped.
+        session: the session to step.
         lines: the script.
-        source: what messages call it.
+        source: the script's name in messages.
         console: where to print.
 
     Raises:
-        MrtaError: at the first command that cannot be carried out; the message names its line.
+        MrtaError: at the first command that cannot be carried out; the message names the line.
     """
     for number, line in enumerate(lines, start=1):
         scenario = session.stepper.scenario
@@ -73,7 +72,7 @@ def run_script(session: Session, lines: Iterable[str], source: str, console: Con
             said = session.do(command)
             if said:
                 console.print(said, soft_wrap=True)
-            elif not session.over:  # it was to look at something
+            elif not session.over:  # a command that shows a table
                 _print(console, Group(*table(session, SCRIPT_ROWS, console.width)))
         except MrtaError as error:
             raise type(error)(f"{source}, line {number}: {error}") from None
@@ -82,8 +81,16 @@ def run_script(session: Session, lines: Iterable[str], source: str, console: Con
     _print(console, Group(*header(session, console.width)))
 
 
+def without_comment(line: str, names: Sequence[str]) -> str:
+    """The line of a script up to a ``#`` that is no part of a name."""
+    hidden = line
+    for name in sorted((name for name in names if "#" in name), key=len, reverse=True):
+        hidden = hidden.replace(name, "\0" * len(name))
+    return line[: hidden.index("#")] if "#" in hidden else line
+
+
 def _print(console: Console, what: RenderableType) -> None:
-    """Print without the blanks at the ends of lines, which tables have."""
+    """Print without blanks at the ends of lines, which tables leave there."""
     with console.capture() as captured:
         console.print(what)
     for line in captured.get().splitlines():

@@ -33,6 +33,18 @@ def read_scenario(path: StrPath, agents: StrPath | None = None) -> Scenario:
     return assemble(read_task_part(path), _agents(agents if agents is not None else find_agent_file(path)))
 
 
+def agent_file(path: StrPath, agents: StrPath | None = None) -> Path | None:
+    """The file that `read_scenario` reads the robots from; None if it is the scenario's own, or cannot be found."""
+    if agents is not None:
+        return Path(agents)
+    if suffix_of(path) in (".json", ".csv"):
+        return None
+    try:
+        return find_agent_file(path)
+    except ScenarioError:  # the reader has more to say: maybe there is no task file either
+        return None
+
+
 def write_scenario(scenario: Scenario, path: StrPath) -> None:
     """Write a scenario exactly, as the suffix says: ``.json``, ``.csv`` or, for TAPTC, ``.txt``.
 

@@ -64,7 +64,7 @@ def rescued(told: str, name: str) -> Path:
 def test_a_plan_is_printed_and_written_elsewhere(
     mission: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
-    vanishing("mrta_zoo.cli.commands", "solve_and_score", monkeypatch)
+    vanishing("mrta_zoo.cli.solve", "solve_and_score", monkeypatch)
     line = "solve cases/m.csv --method nearest --out out/plan.json --plot picture.png"
     printed, told = fails_late(capsys, line)
     assert "completed 2 of 2 tasks" in printed
@@ -104,14 +104,14 @@ def test_the_reader_has_gone(line: str, no_reader: TextIO, monkeypatch: pytest.M
 @pytest.mark.parametrize(
     ("line", "work"),
     [
-        ("solve cases/m.csv --method nearest --out out/rows.csv", "solve_and_score"),
-        ("eval --cases cases --methods nearest --out out/rows.csv", "evaluate"),
+        ("solve cases/m.csv --method nearest --out out/rows.csv", ("mrta_zoo.cli.solve", "solve_and_score")),
+        ("eval --cases cases --methods nearest --out out/rows.csv", ("mrta_zoo.eval.progress", "evaluate")),
     ],
 )
 def test_the_reader_has_gone_and_something_cannot_be_written(
-    line: str, work: str, no_reader: TextIO, monkeypatch: pytest.MonkeyPatch, capsys: Captured
+    line: str, work: tuple[str, str], no_reader: TextIO, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
-    vanishing("mrta_zoo.cli.commands", work, monkeypatch)
+    vanishing(*work, monkeypatch)
     monkeypatch.setattr("sys.stdout", no_reader)
     assert main(line.split()) == 2
     rescued(capsys.readouterr().err, "rows.csv")
@@ -142,7 +142,7 @@ def test_a_picture_that_fails_costs_nothing_else(
 def test_rows_are_printed_where_they_can_be_written_nowhere(
     mission: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
-    vanishing("mrta_zoo.cli.commands", "evaluate", monkeypatch)
+    vanishing("mrta_zoo.eval.progress", "evaluate", monkeypatch)
     line = "eval --cases cases --methods nearest,edf --out out/rows.csv"
     printed, told = fails_late(capsys, line)
     header, *rows = rescued(told, "rows.csv").read_text().splitlines()
@@ -169,7 +169,7 @@ def test_comparisons_pages_and_sessions_are_written_elsewhere(
     assert '"mrta_zoo.comparison"' in rescued(told, "found.json").read_text()
 
     Path("out").mkdir()
-    vanishing("mrta_zoo.cli.replay", "record", monkeypatch)
+    vanishing("mrta_zoo.cli.planning", "record", monkeypatch)
     _, told = fails_late(capsys, "replay cases/m.csv --policy nearest --out out/page.html")
     assert "<html" in rescued(told, "page.html").read_text()
 

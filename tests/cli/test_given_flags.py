@@ -1,25 +1,14 @@
-"""Flags that are unknown, repeated or empty get a sentence that names the right ones; help fits the terminal."""
+"""Flags that are unknown, repeated or empty get a sentence that names the right ones."""
 
 from __future__ import annotations
 
-import runpy
-import sys
 from pathlib import Path
 
 import pytest
-from command_line import Captured, fails
+from command_line import Captured, fails, need
 
 from mrta_zoo.cli.given_flags import check_flags
-from mrta_zoo.cli.main import COMMANDS, main
-
-TRAINED = {"train", "ablate", "sharing"}
-REPORTED = {"reproduce", "converge", "ablate", "sharing"}
-
-
-def need(command: str) -> None:
-    for module, commands in (("torch", TRAINED), ("pandas", REPORTED)):
-        if command in commands:
-            pytest.importorskip(module)
+from mrta_zoo.cli.main import COMMANDS
 
 
 @pytest.mark.parametrize("command", list(COMMANDS))
@@ -97,49 +86,3 @@ def test_what_stands_without_a_flag_is_not_empty(capsys: Captured) -> None:
 
 def test_values_are_no_flags() -> None:
     check_flags(["-1", "-inf", "-", "a=b", "--out=--x", "--", "--y", ""], {"--out": "--out"})
-
-
-@pytest.mark.parametrize("module", ["eval.plot_history", "eval.benchmarks.aec_turns", "train.aec_reinforce"])
-def test_modules_that_are_run(module: str, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
-    pytest.importorskip("matplotlib" if module == "eval.plot_history" else "torch")
-    monkeypatch.setattr(sys, "argv", [module, "--ou", "3"])
-    monkeypatch.delitem(sys.modules, f"mrta_zoo.{module}", raising=False)
-    with pytest.raises(SystemExit) as exit_:
-        runpy.run_module(f"mrta_zoo.{module}", run_name="__main__")
-    assert exit_.value.code == 2
-    assert "--ou" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("width", [1, 5, 24, 40, 57, 80, 200])
-def test_help_fits_the_terminal(width: int, monkeypatch: pytest.MonkeyPatch, capsys: Captured) -> None:
-    """No line is longer than that, or than what is easy to read."""
-    monkeypatch.setenv("COLUMNS", str(width))
-    fits = min(max(width, 40), 100)
-    assert main(["--help"]) == 0
-    assert max(map(len, capsys.readouterr().out.splitlines())) <= fits
-    for command in ("solve", "eval", "demo", "generate"):
-        with pytest.raises(SystemExit) as exit_:
-            main([command, "--help"])
-        assert exit_.value.code == 0
-        lines = capsys.readouterr().out.splitlines()
-        assert max(map(len, lines)) <= fits
-        assert lines[0].startswith(f"usage: mrta-zoo {command} [-h]")
-
-
-@pytest.mark.parametrize(
-    ("command", "line"),
-    [
-        ("solve", "compare. For eils and +polish"),
-        ("eval", "or .json or .csv scenarios), or"),
-        ("train", '"uniform" (paper §IV-A), or "mixture" (both, see'),
-        ("train", "best policy by validation; usable as"),
-    ],
-)
-def test_help_keeps_no_line_breaks_of_the_source(
-    command: str, line: str, monkeypatch: pytest.MonkeyPatch, capsys: Captured
-) -> None:
-    need(command)
-    monkeypatch.setenv("COLUMNS", "100")
-    with pytest.raises(SystemExit):
-        main([command, "--help"])
-    assert line in capsys.readouterr().out

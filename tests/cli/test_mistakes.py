@@ -6,18 +6,9 @@ import os
 from pathlib import Path
 
 import pytest
-from command_line import Captured, fails, refused
+from command_line import Captured, fails, refused, stand_in
 
-from mrta_zoo.cli.main import COMMANDS, main
 from mrta_zoo.errors import ScenarioError
-
-
-@pytest.fixture(scope="module")
-def cases(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder of three small TAPTC cases."""
-    folder = tmp_path_factory.mktemp("data") / "cases"
-    assert main(["generate", "--count", "3", "--tasks", "12", "--robots", "2-3", "--out", str(folder)]) == 0
-    return folder
 
 
 @pytest.mark.parametrize(
@@ -154,5 +145,5 @@ def test_what_no_command_foresees(
     def fail(argv: list[str]) -> None:
         raise problem
 
-    monkeypatch.setitem(COMMANDS, "solve", ("", fail))
+    stand_in("solve", fail, monkeypatch)
     assert complaint in fails(capsys, ["solve"])

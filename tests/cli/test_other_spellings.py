@@ -80,7 +80,7 @@ def test_commands_that_are_piped(files: Path, monkeypatch: pytest.MonkeyPatch, c
 
 def test_policies_and_runs(tmp_path: Path) -> None:
     pytest.importorskip("torch")
-    from mrta_zoo.cli.commands import policy_files
+    from mrta_zoo.cli.methods import files_of_methods
     from mrta_zoo.eval.manifest import digest_of_weights
     from mrta_zoo.policies.neural.capam.config import NetworkConfig
     from mrta_zoo.policies.neural.policy import load_policy
@@ -98,7 +98,7 @@ def test_policies_and_runs(tmp_path: Path) -> None:
     place = tmp_path / "P.SAFETENSORS"
     assert load_policy(place).name == "P"
     assert make_solver(str(place)) is not None
-    assert set(policy_files(f"{place}+polish").values()) == {place, tmp_path / "P.JSON"}
+    assert set(files_of_methods([f"{place}+polish"]).values()) == {place, tmp_path / "P.JSON"}
     assert len(digest_of_weights(str(place))) == 64
 
     place.with_suffix(".JSON").rename(tmp_path / "P.Json")
@@ -109,7 +109,7 @@ def test_policies_and_runs(tmp_path: Path) -> None:
     (tmp_path / "P.Json").rename(capital / "POLICY.JSON")
     assert load_policy(capital).name == "capital"
     assert make_solver(str(capital)) is not None
-    assert set(policy_files(str(capital)).values()) == {capital / "POLICY.SAFETENSORS", capital / "POLICY.JSON"}
+    assert set(files_of_methods([str(capital)]).values()) == {capital / "POLICY.SAFETENSORS", capital / "POLICY.JSON"}
 
     checkpoint.start(tmp_path / "run", TrainConfig(updates=7, network=config))
     mark(tmp_path / "run" / "config.json")

@@ -12,8 +12,8 @@ import pytest
 from factories import small_scenario
 from rich.console import Console
 
-from mrta_zoo.cli.compare import report
 from mrta_zoo.debug import Stepper, compare, record
+from mrta_zoo.debug.comparison_report import report
 from mrta_zoo.debug.percent import percent
 from mrta_zoo.debug.screen import screen
 from mrta_zoo.debug.session import Session

@@ -11,11 +11,12 @@ import numpy as np
 import pytest
 from factories import small_scenario
 from rich.console import Console
+from stepping import scripted
 
 from mrta_zoo.debug import Stepper, make_advisor
 from mrta_zoo.debug.screen import AROUND, prompt, screen
 from mrta_zoo.debug.session import COMMANDS, Session
-from mrta_zoo.debug.terminal import interact, run_script
+from mrta_zoo.debug.terminal import interact
 from mrta_zoo.errors import ActionError, ConfigError, MrtaError
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.io import read_trace
@@ -33,13 +34,6 @@ def lines_of(what: object, width: int) -> list[str]:
     with console.capture() as captured:
         console.print(what)
     return captured.get().split("\n")[:-1]
-
-
-def scripted(script: str, method: str | None = "nearest", start: Session | None = None) -> str:
-    output = io.StringIO()
-    console = Console(file=output, width=80, no_color=True, markup=False, highlight=False, emoji=False)
-    run_script(start or session(method), script.split("\n"), "script.txt", console)
-    return output.getvalue()
 
 
 def test_commands_say_what_came_of_them() -> None:
@@ -86,7 +80,7 @@ def test_bad_commands(line: str, message: str) -> None:
     assert "\n" not in str(caught.value)
     assert (steps.stepper.position, steps.unsaved, steps.over) == (0, 0, False)
     with pytest.raises(type(caught.value), match=r"^script\.txt, line 3: "):
-        scripted(f"# first\n\n{line}\nend")
+        scripted(session(), f"# first\n\n{line}\nend")
 
 
 def test_every_command_is_explained() -> None:
@@ -160,8 +154,8 @@ def test_marks_and_tones() -> None:
 
 def test_a_script_prints_the_same_always() -> None:
     script = "show 3   # at first\nfollow\n5\nlog\nback 2\nrobots\nend\nshow"
-    output = scripted(script)
-    assert output == scripted(script)
+    output = scripted(session(), script)
+    assert output == scripted(session(), script)
     assert "\x1b" not in output
     assert all(line == line.rstrip() and len(line) <= 80 for line in output.split("\n"))
     assert output.startswith(
@@ -173,14 +167,14 @@ def test_a_script_prints_the_same_always() -> None:
 
 
 def test_a_script_ends_at_quit() -> None:
-    assert "> end" not in scripted("quit\nend")
+    assert "> end" not in scripted(session(), "quit\nend")
     with pytest.raises(ConfigError, match=r"script\.txt, line 1: there is no command 'show'"):
-        scripted("show 0")
+        scripted(session(), "show 0")
 
 
 def test_saving_and_loading(tmp_path: Path) -> None:
     path = tmp_path / "s.json"
-    assert f"> save {path}\n2 decisions saved to {path}\n" in scripted(f"f\nf\nb\nsave {path}\nend\nsave\n")
+    assert f"> save {path}\n2 decisions saved to {path}\n" in scripted(session(), f"f\nf\nb\nsave {path}\nend\nsave\n")
     trace = read_trace(path)
     assert trace.mission().done
     steps = session(None)
@@ -188,7 +182,7 @@ def test_saving_and_loading(tmp_path: Path) -> None:
     steps.do("goto 1")
     assert steps.stepper.advice == trace.choices[1]
     with pytest.raises(ActionError, match="the mission is over, after"):
-        scripted("end\nfollow")
+        scripted(session(), "end\nfollow")
 
 
 def test_a_plans_advice_is_for_its_own_mission(tmp_path: Path) -> None:

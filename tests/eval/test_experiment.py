@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mrta_zoo.cli.case_choice import read_all, shown_cases
+from mrta_zoo.cli.cases import read_all, shown_cases
 from mrta_zoo.cli.main import main
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.cells import Cell, Tell, case_cells
@@ -306,7 +306,7 @@ def test_ctrl_c_says_how_to_go_on(
     def interrupted(*args: object) -> object:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(f"mrta_zoo.cli.{command}.parse", interrupted)
+    monkeypatch.setattr("mrta_zoo.cli.flags.parse", interrupted)
     assert main([command, "--out", "x"]) == 130
     assert capsys.readouterr().err == "the same command goes on where it stopped\ninterrupted\n"
 

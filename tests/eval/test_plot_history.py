@@ -28,3 +28,8 @@ def test_what_is_no_history_is_refused(tmp_path: Path, text: str | None, sentenc
         (tmp_path / "history.csv").write_text(text)
     with pytest.raises(ConfigError, match=sentence):
         read_history(tmp_path / "history.csv")
+
+
+def test_curves_of_no_run() -> None:
+    with pytest.raises(ConfigError, match="no run is given; expected folders of runs"):
+        main((), out=Path("curves.png"))

@@ -12,7 +12,6 @@ import pytest
 from command_line import Captured, fails
 from matplotlib.figure import Figure
 
-from mrta_zoo.cli import commands
 from mrta_zoo.cli.main import main
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.plot_history import main as plot_history
@@ -43,7 +42,7 @@ def no_avif(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_what_cannot_be_written_is_told_before_planning(
     suffix: str, mission: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
-    monkeypatch.setattr(commands, "solve_and_score", lambda *_: pytest.fail("it was planned"))
+    monkeypatch.setattr("mrta_zoo.cli.solve.solve_and_score", lambda *_: pytest.fail("it was planned"))
     out = tmp_path / f"p{suffix}"
     arguments = ["solve", str(mission), "--method", "nearest", "--plot", str(out)]
     error = fails(capsys, arguments)

@@ -10,8 +10,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 import numpy.typing as npt
+import tyro
 
-from mrta_zoo.cli.flags import run
 from mrta_zoo.env.settings import ObservationForm
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.aec_loop import run_in_environment
@@ -74,7 +74,7 @@ def completions(plan: Planner, episodes: int = 200) -> npt.NDArray[np.float64]:
 def show(train: Callable[..., Any]) -> None:
     """Command line of an integration: train, with the function's arguments as flags, and print the result."""
     begun = time.perf_counter()
-    trained = run(train, f"mrta_zoo.train.integrations.{Path(sys.argv[0]).stem}")
+    trained = tyro.cli(train, prog=f"python -m mrta_zoo.train.integrations.{Path(sys.argv[0]).stem}")
     took = time.perf_counter() - begun
     planners = {
         "random": in_aec_loop(RandomPolicy()),

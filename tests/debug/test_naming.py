@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-import io
 import re
 from dataclasses import replace
 
 import pytest
 from factories import named_scenario
 from rich.cells import cell_len
-from rich.console import Console
+from stepping import scripted
 
 from mrta_zoo import Scenario
 from mrta_zoo.debug import Stepper
-from mrta_zoo.debug.called import without_comment
 from mrta_zoo.debug.screen import header, prompt
 from mrta_zoo.debug.session import Session
-from mrta_zoo.debug.terminal import run_script
+from mrta_zoo.debug.terminal import without_comment
 from mrta_zoo.errors import ActionError, ConfigError
 
 NAMED = named_scenario()
@@ -24,13 +22,6 @@ NAMED = named_scenario()
 
 def session(*task_names: str) -> Session:
     return Session(Stepper(replace(NAMED, task_names=task_names or NAMED.task_names), "nearest"))
-
-
-def scripted(steps: Session, script: str, width: int = 80) -> str:
-    output = io.StringIO()
-    console = Console(file=output, width=width, no_color=True, markup=False, highlight=False, emoji=False)
-    run_script(steps, script.split("\n"), "script.txt", console)
-    return output.getvalue()
 
 
 @pytest.mark.parametrize("line", ["pump #3 <b>", "take pump #3 <b>", "  take   pump #3 <b>  ", "1", "take 1"])

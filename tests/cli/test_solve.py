@@ -8,15 +8,17 @@ from dataclasses import replace
 from pathlib import Path
 
 import jsonschema
+import numpy as np
 import pytest
 from command_line import Captured, fails
 from factories import hopeless_scenario, named_scenario
 
 from mrta_zoo import extras
 from mrta_zoo.cli.main import main
-from mrta_zoo.digits import decimals, full
-from mrta_zoo.io import json_format, read_plan, write_plan, write_scenario
+from mrta_zoo.generators import TaptcGenerator
+from mrta_zoo.io import json_format, read_plan, read_scenario, write_plan, write_scenario
 from mrta_zoo.plan import Plan
+from mrta_zoo.verify import verify
 from mrta_zoo.wording import listed
 
 NEAREST = """\
@@ -167,8 +169,66 @@ def test_how_learned_methods_plan_is_for_one_of_them(flags: list[str], mission: 
     assert "planned by capam-plus in " in capsys.readouterr().out
 
 
-def test_small_times_keep_their_digits() -> None:
-    assert [full(time) for time in (60.0, 33.333333, 999999.75, 123456789.5)] == [
-        "60", "33.3333", "999999.75", "123456789.5"
-    ]  # fmt: skip
-    assert [decimals(largest, 2) for largest in (0.0, 1.2e-7, 0.018, 0.5, 3.0, 300.0)] == [2, 9, 4, 3, 2, 2]
+def test_solve_prints_and_writes_the_verified_plan(cases: Path, tmp_path: Path, capsys: Captured) -> None:
+    task_file = next((cases / "group1").glob("*.txt"))
+    out, picture = tmp_path / "plan.json", tmp_path / "plan.png"
+    arguments = ["solve", str(task_file), "--method", "nearest", "--out", str(out)]
+    pytest.importorskip("matplotlib")
+    arguments += ["--plot", str(picture)]
+    assert main(arguments) == 0
+    output = capsys.readouterr()
+    scenario, plan = read_scenario(task_file), read_plan(out)
+    score = verify(scenario, plan)
+    for robot, visits in enumerate(score.schedule):
+        for visit in visits:
+            line = f"robot {robot} {visit.task} {visit.arrival:.2f} {visit.finish:.2f} {visit.deadline:g}"
+            assert line.split() in [each.split() for each in output.out.splitlines()]
+    assert f"completed {score.completed} of 12 tasks" in output.out
+    document = json.loads(out.read_text())
+    assert document["score"]["cost"] == score.cost
+    assert document["schedule"][0][0]["finish"] == score.schedule[0][0].finish
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert output.err == ""
+
+
+@pytest.mark.parametrize(
+    ("budget", "says"), [("20", "proven optimal: no plan completes more tasks"), ("1e-9", "no plan")]
+)
+def test_solve_prints_what_is_proven(cases: Path, tmp_path: Path, budget: str, says: str, capsys: Captured) -> None:
+    pytest.importorskip("scipy")
+    pytest.importorskip("numba")
+    task_file, out = next((cases / "group1").glob("*.txt")), tmp_path / "plan.json"
+    assert main(["solve", str(task_file), "--method", "exact", "--budget", budget, "--out", str(out)]) == 0
+    assert says in capsys.readouterr().out
+    document = json.loads(out.read_text())
+    assert document["bound"] >= document["score"]["completed"]
+
+
+def test_solve_reads_json_csv_and_named_agents(tmp_path: Path, capsys: Captured) -> None:
+    scenario = TaptcGenerator(tasks=(9, 9), robots=(2, 2))(np.random.default_rng(2), "mission")
+    for suffix in ("json", "csv", "txt"):
+        write_scenario(scenario, tmp_path / f"mission.{suffix}")
+    robots = tmp_path / "robots.txt"
+    (tmp_path / "agent" / "mission.txt").rename(robots)
+    totals = []
+    for arguments in (["mission.json"], ["mission.csv"], ["mission.txt", "--agents", str(robots)]):
+        assert main(["solve", str(tmp_path / arguments[0]), *arguments[1:], "--method", "edf"]) == 0
+        totals.append(capsys.readouterr().out.splitlines()[-2:])
+    assert totals[0] == totals[1] == totals[2]
+
+
+def test_solve_under_another_mask_rule_takes_everything(cases: Path, capsys: Captured) -> None:
+    task_file = next((cases / "group1").glob("*.txt"))
+    assert main(["solve", str(task_file), "--method", "nearest", "--mask-rule", "unvisited"]) == 0
+    assert " 0 not taken" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("decode", ["augment", "beam"])
+def test_solve_decodes_as_it_is_told(cases: Path, tmp_path: Path, decode: str) -> None:
+    neural = pytest.importorskip("mrta_zoo.policies.neural.policy")
+    case, out = next(cases.glob("group1/*.txt")), tmp_path / "plan.json"
+    flags = ["--method", "capam", "--decode", decode, "--samples", "4", "--out", str(out)]
+    assert main(["solve", str(case), *flags]) == 0
+    scenario = read_scenario(case)
+    expected = neural.load_policy("capam").solve(scenario, decode=decode, samples=4)
+    assert read_plan(out).routes == expected.routes

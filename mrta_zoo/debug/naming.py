@@ -1,7 +1,7 @@
-"""What tasks and robots are called where somebody steps through an episode: shown, and typed.
+"""How tasks and robots are named, on the screen and in commands.
 
-Where they have names, these count. Their numbers count, too, unless one of the names is a number: which of the two was
-meant would be a guess then.
+Their names count, if they have any, and their numbers do, too, unless a name is itself a number: then nobody could tell
+which of the two was meant.
 """
 
 from __future__ import annotations
@@ -16,38 +16,38 @@ from mrta_zoo.show.shortened import shortened as shorter
 from mrta_zoo.wording import composed, listed
 
 LISTED = 8
-"""Names that a message lists at most."""
+"""The most names that a message lists."""
 DIGITS = 9
-"""Of a number, at most."""
+"""The most digits of a number."""
 
 
 def numbers_count(names: Sequence[str]) -> bool:
-    """Whether numbers are understood besides these names."""
+    """Whether numbers are understood as well as these names."""
     return not any(name.isdecimal() for name in names)
 
 
-def called(index: int, names: Sequence[str]) -> str:
-    """Its name, or its number."""
+def label(index: int, names: Sequence[str]) -> str:
+    """The name of a task or robot; its number if there are no names."""
     return names[index] if names else str(index)
 
 
 def cells(index: int, names: Sequence[str]) -> tuple[str, ...]:
-    """What a row of a table calls a task or robot, under `headings`."""
+    """The cells of a table's row that name a task or robot, under `headings`."""
     return (*((str(index),) if numbers_count(names) else ()), *((names[index],) if names else ()))
 
 
 def headings(who: str, names: Sequence[str]) -> tuple[str, ...]:
-    """The columns of `cells`: the number, the name or both."""
+    """The headings over `cells`: of the number, the name or both."""
     return (who, "name") if names and numbers_count(names) else (who,)
 
 
 def find(text: str, who: str, names: Sequence[str]) -> int | None:
-    """The task or robot that a text means by its name or its number, be it 2, "robot 2" or "robot_2"; None if neither.
+    """The task or robot that a text names; None if it names none. A number may be 2, "robot 2" or "robot_2".
 
     Args:
         text: what was typed.
         who: "task" or "robot".
-        names: of all of them, empty if they have none.
+        names: the names of all of them; empty if they have none.
     """
     if (name := composed(text)) in names:
         return names.index(name)
@@ -55,16 +55,11 @@ def find(text: str, who: str, names: Sequence[str]) -> int | None:
     return int(number[1]) if number and numbers_count(names) else None
 
 
-def found(text: str, who: str, names: Sequence[str]) -> int:
-    """The task or robot that a text means.
-
-    Args:
-        text: what was typed.
-        who: "task" or "robot", for the message.
-        names: of all of them, empty if they have none.
+def identify(text: str, who: str, names: Sequence[str]) -> int:
+    """The task or robot that a text names, as `find`.
 
     Raises:
-        ConfigError: if it is neither a name nor a whole number that counts.
+        ConfigError: if it names none.
     """
     index = find(text, who, names)
     if index is not None:
@@ -77,7 +72,7 @@ def found(text: str, who: str, names: Sequence[str]) -> int:
 
 
 def shortened(name: str, most: int, among: Sequence[str] = ()) -> str:
-    """A name in so many columns of a terminal, cut where it is like the others or else in the middle."""
+    """A name cut to at most so many columns of a terminal, where it is like the others or else in the middle."""
     if cell_len(name) <= most:
         return name
     telling = shorter(name, lambda text: cell_len(text) <= most, among) if among else ""
@@ -87,11 +82,3 @@ def shortened(name: str, most: int, among: Sequence[str] = ()) -> str:
     while tail and (cell_len(tail) > (most - 1) // 2 or not cell_len(tail[0])):  # which would be an accent alone
         tail = tail[1:]
     return f"{set_cell_size(name, most - 1 - cell_len(tail)).rstrip()}…{tail.lstrip()}"
-
-
-def without_comment(line: str, names: Sequence[str]) -> str:
-    """A line of a script up to a ``#`` that is no part of a name."""
-    hidden = line
-    for name in sorted((name for name in names if "#" in name), key=len, reverse=True):
-        hidden = hidden.replace(name, "\0" * len(name))
-    return line[: hidden.index("#")] if "#" in hidden else line

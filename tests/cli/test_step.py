@@ -1,38 +1,20 @@
-"""The commands that look into episodes: `mrta-zoo step` and `mrta-zoo compare`."""
+"""The command ``mrta-zoo step``."""
 
 from __future__ import annotations
 
 import io
 import json
-import signal
-import subprocess
-import sys
-import threading
 from pathlib import Path
 
 import pytest
-from command_line import Captured, fails
+from command_line import SCENARIO, Captured, fails, script
 from factories import named_scenario, small_scenario
 from real_cases import REAL, needs_real_cases
 
 from mrta_zoo.cli.main import main
-from mrta_zoo.debug import compare, record
-from mrta_zoo.debug.session import Session
+from mrta_zoo.debug import record
 from mrta_zoo.io import read_trace, write_plan, write_scenario, write_trace
 from mrta_zoo.plan import Plan
-
-SCENARIO = small_scenario(2, tasks=12, robots=3)
-
-
-@pytest.fixture
-def mission(tmp_path: Path) -> str:
-    write_scenario(SCENARIO, tmp_path / "mission.json")
-    return str(tmp_path / "mission.json")
-
-
-def script(tmp_path: Path, text: str) -> str:
-    (tmp_path / "commands.txt").write_text(text)
-    return str(tmp_path / "commands.txt")
 
 
 def test_an_empty_file_becomes_a_new_session(mission: str, tmp_path: Path, capsys: Captured) -> None:
@@ -151,59 +133,6 @@ def test_what_cannot_be_stepped(mission: str, tmp_path: Path, capsys: Captured) 
     assert "the plan has 2 routes" in message
 
 
-def test_compare_prints_and_writes(mission: str, tmp_path: Path, capsys: Captured) -> None:
-    write_plan(record(SCENARIO, "edf").plan(), tmp_path / "plan.json")
-    plan, out = str(tmp_path / "plan.json"), tmp_path / "comparison.json"
-    assert main(["compare", mission, "--methods", f"nearest,{plan}", "--out", str(out), "--rows", "2"]) == 0
-    output = capsys.readouterr().out
-    found = compare(SCENARIO, "nearest", record(SCENARIO, "edf").plan())
-    assert found.parting is not None
-    instead = found.parting.otherwise[0]
-    assert instead is not None
-    assert f"They part at decision {found.parting.index}, at {found.parting.time:.1f}, when robot" in output
-    assert f"there and then by itself: completed {instead.completed} (" in output
-    assert f"choose otherwise at {len(found.disagreements)} of {len(found.traces[0].choices)} decisions" in output
-    assert output.count("more (--rows)") == sum(
-        len(each) > 2
-        for each in (
-            found.disagreements, found.turns,
-            [fate for fate in found.fates if fate.completed[0]], [fate for fate in found.fates if fate.completed[1]],
-        )
-    )  # fmt: skip
-    document = json.loads(out.read_text())
-    assert (document["format"], document["version"], document["methods"]) == (
-        "mrta_zoo.comparison",
-        1,
-        ["nearest", plan],
-    )
-    assert document["parting"]["otherwise"][0]["cost"] == instead.cost
-    assert len(document["turns"]) == len(found.turns)
-    assert main(["compare", mission, "--methods", f"edf,{plan}"]) == 0
-    assert f"edf and {plan} do the same throughout" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(
-    ("methods", "percents"),
-    [("PLAN,nearest", []), ("PLAN,capam-plus", ["% capam-plus"]), ("capam-plus,capam", ["% capam-plus", "% capam"])],
-)
-def test_who_has_no_probabilities_has_no_column_of_them(
-    methods: str, percents: list[str], mission: str, tmp_path: Path, capsys: Captured
-) -> None:
-    write_plan(Plan(((0,), (), ())), tmp_path / "plan.json")
-    assert main(["compare", mission, "--methods", methods.replace("PLAN", str(tmp_path / "plan.json"))]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    parted = next(index for index, line in enumerate(lines) if line.startswith("They part at"))
-    heading = next(line for line in lines[parted:] if line.split()[:1] == ["method"])
-    assert heading.split() == ["method", "task", "distance", "finish", "slack", *" ".join(percents).split()]
-
-
-def test_what_cannot_be_compared(mission: str, capsys: Captured) -> None:
-    assert "expected two, such as" in fails(capsys, ["compare", mission, "--methods", "nearest"])
-    assert "named twice" in fails(capsys, ["compare", mission, "--methods", "nearest,nearest"])
-    assert "rows is 0" in fails(capsys, ["compare", mission, "--methods", "nearest,edf", "--rows", "0"])
-    assert "which is the scenario" in fails(capsys, ["compare", mission, "--methods", "edf,random", "--out", mission])
-
-
 @needs_real_cases
 def test_a_real_case(tmp_path: Path, capsys: Captured) -> None:
     case = str(min((REAL / "n100" / "group1").glob("*.txt")))
@@ -211,76 +140,6 @@ def test_a_real_case(tmp_path: Path, capsys: Captured) -> None:
     assert "They part at decision" in capsys.readouterr().out
     assert main(["step", case, "--policy", "nearest", "--script", script(tmp_path, "jump 1\nshow\nend")]) == 0
     assert "the mission is over: completed" in capsys.readouterr().out
-
-
-@pytest.mark.usefixtures("signals_heard")
-@pytest.mark.parametrize("number", [signal.SIGHUP, signal.SIGTERM])
-def test_a_lost_connection_saves_the_session(mission: str, tmp_path: Path, number: int) -> None:
-    session = tmp_path / "session.json"
-    code = (
-        "import os, sys; from mrta_zoo.cli.main import main; "
-        "from mrta_zoo.debug.session import Session; do = Session.do; "
-        f"Session.do = lambda self, line: os.kill(os.getpid(), {int(number)}) if line == 'q' else do(self, line); "
-        "sys.exit(main(sys.argv[1:]))"
-    )
-    flags = ["--policy", "edf", "--session", str(session), "--script", script(tmp_path, "f 3\nq")]
-    command = [sys.executable, "-c", code, "step", mission, *flags]
-    done = subprocess.run(command, capture_output=True, timeout=60, check=False)
-    assert (done.returncode, done.stderr) == (128 + number, b"")
-    assert read_trace(session).bookmark == 3
-
-
-def handlers() -> list[object]:
-    return [signal.getsignal(number) for number in sorted(signal.valid_signals())]
-
-
-@pytest.mark.parametrize("flags", [[], ["--session"]], ids=["", "session"])
-def test_signals_are_left_to_who_handles_them(
-    flags: list[str], mission: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    seen: list[object] = []
-    do = Session.do
-
-    def watch(session: Session, line: str) -> str:
-        seen.append((signal.getsignal(signal.SIGTERM), signal.getsignal(signal.SIGINT)))
-        return do(session, line)
-
-    monkeypatch.setattr(Session, "do", watch)
-    before = handlers()
-    flags = [*flags, str(tmp_path / "session.json")] if flags else []
-    arguments = ["step", mission, "--policy", "edf", *flags, "--script", script(tmp_path, "f 2")]
-    assert main(arguments) == 0
-    (terminate, interrupt) = seen.pop()
-    assert interrupt is signal.getsignal(signal.SIGINT)
-    assert (terminate is signal.SIG_DFL) == (not flags)  # there is a session to save, or not
-    assert handlers() == before
-    own = signal.signal(signal.SIGTERM, lambda *_: None)
-    try:
-        mine = signal.getsignal(signal.SIGTERM)
-        assert main(arguments) == 0
-        assert seen.pop()[0] is mine is signal.getsignal(signal.SIGTERM)
-    finally:
-        signal.signal(signal.SIGTERM, own)
-
-
-@pytest.mark.parametrize("missing", ["", "SIGHUP"])
-def test_in_a_thread_and_without_hangups(
-    missing: str, mission: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    if missing:  # as on Windows
-        monkeypatch.delattr(signal, missing)
-    codes: list[int] = []
-    session = ["--session", str(tmp_path / "session.json"), "--script", script(tmp_path, "f 2")]
-
-    def run() -> None:
-        codes.append(main(["step", mission, "--policy", "edf", *session]))
-
-    thread = threading.Thread(target=run)
-    thread.start()
-    thread.join()
-    run()
-    assert codes == [0, 0]
-    assert read_trace(tmp_path / "session.json").bookmark == 4
 
 
 def test_a_closed_standard_input_is_told(mission: str, capsys: Captured, monkeypatch: pytest.MonkeyPatch) -> None:
