@@ -4,20 +4,19 @@ The paper compares with EILS (A. Mitiche, D. Boughaci, M. Gini, "Iterated local 
 task allocation with spatio-temporal and capacity constraints", Journal of Intelligent Systems 28, 2019). The details of
 its perturbation could not be recovered, so this one is ours, in the spirit of slack induction by string removals (J.
 Christiaens, G. Vanden Berghe, Transportation Science 54, 2020): near a random task, remove a string of consecutive
-visits from some tours, then refill those tours with the unvisited tasks, either by the least Shift times a random
-weight or one after another, as they do, but by deadline. The first does better where most tasks cannot be done, the
-second where most can. What comes out is kept if it completes more tasks or takes less time, or is worse by no more than
-chance allows.
+visits from some tours, then refill those tours with the unvisited tasks. Tasks go in either by the least Shift times a
+random weight or, as in that paper, one after another, but by deadline. The first does better where most tasks cannot be
+done, the second where most can. A step that completes more tasks or saves time is accepted; a worse one is accepted
+with a probability that falls as the search cools.
 """
 
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass
 from functools import cache, partial
 from operator import itemgetter
-from threading import Event
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -37,32 +36,31 @@ from mrta_zoo.policies.classical.local_search.tours import (
     tours_of,
 )
 from mrta_zoo.policies.interruption import interruptible, side_by_side
+from mrta_zoo.policies.stop import Cancellation, FirstOf, MaxIterations, StoppingCriterion, TimeLimit
 from mrta_zoo.scenario import FloatArray, Scenario
 from mrta_zoo.verify import verify
 
 Worth = tuple[int, float]
-"""Of tours; the greater, the better."""
+"""Of tours: the number of visits and the time saved. The greater is the better."""
 
 CHUNK = 100
-"""Iterations at one temperature, at most."""
-LOOKS = 100
-"""At the clock, about so many at least, if there is a budget."""
+"""Most iterations at one temperature."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EilsConfig:
-    """How the search goes; times are multiples of what a visit takes on average in the first plan.
+    """Parameters of the search. The unit of time is the mean time per visit in the first plan.
 
     Attributes:
-        iterations_a_task: without a budget the search ends after so many iterations for each task, >= 1,
-        least_iterations: but not before so many, >= 1.
-        removals: visits that a perturbation removes on average, >= 1.
-        noise: random weights of Shift lie between 1 and 1 + noise, >= 0.
-        by_deadline: share of the refills that go by deadline instead, 0 to 1.
-        blink: probability with which these do not offer a task to a tour, 0 to 1.
-        reward: what a completed task is worth, in time, > 0.
-        hot: temperature at the beginning, in time, > 0.
-        cold: temperature at the end, in time, > 0.
+        iterations_a_task: number of iterations per task of a search without a budget, >= 1.
+        least_iterations: minimum number of iterations of such a search, >= 1.
+        removals: mean number of visits that a perturbation removes, >= 1.
+        noise: the random weights of Shift lie between 1 and 1 + noise, >= 0.
+        by_deadline: share of the refills that go by deadline instead, from 0 to 1.
+        blink: probability that such a refill does not offer a task to a tour, from 0 to 1.
+        reward: time that a completed task is worth, > 0.
+        hot: temperature at the beginning, as a time, > 0.
+        cold: temperature at the end, as a time, > 0.
 
     Raises:
         ConfigError: if a value is out of range.
@@ -93,15 +91,15 @@ class EilsConfig:
 
 
 class EilsSolver:
-    """Plans by EILS-style search. Making the first one compiles the search, some 20 seconds on a machine new to it.
+    """Plans by EILS-style search. The first instance compiles the search: some 20 seconds on a new machine.
 
     Args:
         seed: of the perturbations, >= 0.
-        budget: seconds a scenario, > 0; by default `EilsConfig.iterations_a_task` ends the search, and the plan does
-            not depend on the machine.
-        config: how the search goes.
-        threads: with a budget, so many searches go on at a time, each with draws of its own, and the best plan counts.
-            Without one there is one search, and the plan does not depend on this.
+        budget: seconds per scenario, > 0. By default the search ends after a number of iterations (see `EilsConfig`),
+            and the plan is the same on every machine.
+        config: parameters of the search.
+        threads: number of parallel searches, each with its own random draws; the best plan counts. Without a budget
+            there is one search, whatever this is.
     """
 
     def __init__(
@@ -111,37 +109,41 @@ class EilsSolver:
         self._threads = 1 if budget is None else threads
         compile_once()
 
-    def solve(self, scenario: Scenario, stop: Event | None = None) -> Plan:
-        """A plan for `scenario`; the search ends early once another thread sets `stop`."""
+    def solve(self, scenario: Scenario, stop: StoppingCriterion | None = None) -> Plan:
+        """A plan for `scenario`. `stop` ends the search instead of the solver's own budget."""
         return self.improve(scenario, Plan(((),) * scenario.num_robots), "eils", stop)
 
-    def improve(self, scenario: Scenario, plan: Plan, method: str, stop: Event | None = None) -> Plan:
-        """A plan that completes at least as many tasks as `plan`, with no late visits unless it is the same.
+    def improve(self, scenario: Scenario, plan: Plan, method: str, stop: StoppingCriterion | None = None) -> Plan:
+        """A plan that completes at least as many tasks as `plan`. Unless it is `plan` itself, no visit is late.
 
         Args:
             scenario: the mission.
-            plan: where the search begins.
-            method: what the plan is signed with.
-            stop: ends the search early once another thread sets it.
+            plan: the plan that the search begins with.
+            method: method name stored in the new plan.
+            stop: ends the search instead of the solver's own budget.
 
         Raises:
             PlanError: if `plan` does not fit `scenario`.
         """
-        begun = time.perf_counter()
-        problem, stopped = make_problem(scenario), stop or Event()
+        cancellation = Cancellation()
+        criterion = FirstOf((stop or self._stop(scenario), cancellation))
+        problem = make_problem(scenario)
 
         def search(number: int) -> tuple[Worth, Tours]:
             rng = np.random.default_rng((self._seed, number) if number else self._seed)
-            tours = tours_of(problem, scenario, plan)
-            best = _search(problem, tours, rng, begun, self._budget, self._config, stopped)
+            best = _search(problem, tours_of(problem, scenario, plan), rng, criterion, self._config)
             return worth(best), best
 
-        searches = [partial(search, number) for number in range(self._threads)]
-        found = side_by_side([partial(interruptible, each, stopped.set) for each in searches], stopped.set)
-        best = max(found, key=itemgetter(0))[1]
-        if verify(scenario, plan).completed > best.size.sum():  # one late visit, dropped, made another late by rounding
+        searches = [partial(interruptible, partial(search, k), cancellation.cancel) for k in range(self._threads)]
+        best = max(side_by_side(searches, cancellation.cancel), key=itemgetter(0))[1]
+        if verify(scenario, plan).completed > best.size.sum():  # dropping a late visit made another late by rounding
             return Plan(plan.routes, scenario.name, method)
         return plan_of(best, scenario, method)
+
+    def _stop(self, scenario: Scenario) -> StoppingCriterion:
+        if self._budget is not None:
+            return TimeLimit.of(self._budget)
+        return MaxIterations(max(self._config.iterations_a_task * scenario.num_tasks, self._config.least_iterations))
 
 
 def worth(tours: Tours) -> Worth:
@@ -157,98 +159,110 @@ def compile_once() -> None:
 
 def _compile() -> None:
     problem = make_problem(smallest_scenario())
-    worth(_search(problem, empty_tours(problem), np.random.default_rng(0), 0.0, None, EilsConfig(), Event()))
+    worth(_search(problem, empty_tours(problem), np.random.default_rng(0), MaxIterations(1), EilsConfig()))
+
+
+class Annealing(NamedTuple):
+    """The state of a search. All of it is changed in place.
+
+    Attributes:
+        current: the tours that the search has accepted.
+        trial: a copy of them between iterations, and the tours on trial within one.
+        best: the tours with the most visits so far.
+        shift: (M, N) scratch space.
+        weight: (N,) scratch space.
+    """
+
+    current: Tours
+    trial: Tours
+    best: Tours
+    shift: FloatArray
+    weight: FloatArray
+
+
+class Moves(NamedTuple):
+    """Parameters of the iterations at one temperature, with times in the scenario's units; see `EilsConfig`.
+
+    Attributes:
+        temperature: a change for the worse by this much time is accepted with probability 1/e.
+        removals: mean number of visits removed.
+        noise: the weights of Shift lie between 1 and 1 + noise.
+        by_deadline: share of the refills that go by deadline instead.
+        blink: probability that such a refill does not offer a task to a tour.
+        reward: time that a completed task is worth.
+    """
+
+    temperature: float
+    removals: float
+    noise: float
+    by_deadline: float
+    blink: float
+    reward: float
+
+    @classmethod
+    def of(cls, config: EilsConfig, visit_time: float, progress: float) -> Moves:
+        """What `config` says for a search that is so far on, where a visit takes so much time."""
+        return cls(
+            temperature=visit_time * config.hot * (config.cold / config.hot) ** progress,
+            removals=config.removals,
+            noise=config.noise,
+            by_deadline=config.by_deadline,
+            blink=config.blink,
+            reward=config.reward * visit_time,
+        )
 
 
 def _search(
-    problem: Problem,
-    tours: Tours,
-    rng: np.random.Generator,
-    begun: float,
-    budget: float | None,
-    config: EilsConfig,
-    stopped: Event,
+    problem: Problem, tours: Tours, rng: np.random.Generator, stop: StoppingCriterion, config: EilsConfig
 ) -> Tours:
-    """The best tours that come of some; these are changed."""
-    shift, weight = np.empty(problem.work.shape), np.ones(len(problem.deadline))
-    fill(problem, tours, shift, np.ones(len(problem.speed), dtype=np.bool_), weight)
+    """The best tours that a search finds from `tours` on, which it changes."""
+    m, n = problem.work.shape
+    state = Annealing(tours, empty_tours(problem), empty_tours(problem), np.empty((m, n)), np.ones(n))
+    fill(problem, tours, state.shift, np.ones(m, dtype=np.bool_), state.weight)
     visits = int(tours.size.sum())
     if visits == 0:
         return tours
-    trial, best = empty_tours(problem), empty_tours(problem)
-    copy_tours(tours, trial)
-    copy_tours(tours, best)
+    copy_tours(tours, state.trial)
+    copy_tours(tours, state.best)
     visit_time = total_time(tours) / visits
-    iterations = max(config.iterations_a_task * len(problem.deadline), config.least_iterations)
-    done, share = 0, 0.0
-    while share < 1.0 and not stopped.is_set():
-        if budget is None:
-            chunk = min(CHUNK, iterations - done)
-        elif share == 0.0:
-            chunk = 1  # which tells the pace
-        else:
-            chunk = min(CHUNK, int(done / share * min(1.0 / LOOKS, 1.0 - share)) + 1)
-        temperature = visit_time * config.hot * (config.cold / config.hot) ** share
-        anneal(
-            problem, tours, trial, best, shift, weight, chunk, temperature, config.removals, config.noise,
-            config.by_deadline, config.blink, config.reward * visit_time, rng,
-        )  # fmt: skip
-        done += chunk
-        share = done / iterations if budget is None else (time.perf_counter() - begun) / budget
-    return best
+    done = idle = 0
+    while (progress := stop.progress(done, idle)) < 1.0:
+        chunk = int(min(CHUNK, stop.next_look(done, progress)))
+        anneal(problem, state, chunk, Moves.of(config, visit_time, progress), rng)
+        done, idle = done + chunk, idle + chunk
+        if (most := int(state.best.size.sum())) > visits:
+            visits, idle = most, 0
+    return state.best
 
 
 @compiled
-def anneal(
-    problem: Problem,
-    tours: Tours,
-    trial: Tours,
-    best: Tours,
-    shift: FloatArray,
-    weight: npt.NDArray[np.float64],
-    iterations: int,
-    temperature: float,
-    removals: float,
-    noise: float,
-    by_deadline: float,
-    blink: float,
-    reward: float,
-    rng: np.random.Generator,
-) -> None:
+def anneal(problem: Problem, state: Annealing, iterations: int, moves: Moves, rng: np.random.Generator) -> None:
     """Some iterations of perturbation, refilling and acceptance at one temperature.
 
     Args:
         problem: the scenario.
-        tours: the tours that the search stands at, changed in place.
-        trial: a copy of them, and again at the end.
-        best: the best tours so far, updated.
-        shift: (M, N) scratch space.
-        weight: (N,) scratch space.
+        state: of the search, changed in place.
         iterations: how many.
-        temperature: a change that is worse by so much time is accepted with probability 1/e.
-        removals: visits removed on average.
-        noise: weights of Shift lie between 1 and 1 + noise.
-        by_deadline: share of the refills that go by deadline instead.
-        blink: probability with which these do not offer a task to a tour.
-        reward: what a completed task is worth, in time.
+        moves: their parameters.
         rng: of all draws.
     """
     m, n = problem.work.shape
+    tours, trial, weight = state.current, state.trial, state.weight
     changed = np.zeros(m, dtype=np.bool_)
-    most = best.size.sum()
-    value = reward * tours.size.sum() - total_time(tours)
+    most = state.best.size.sum()
+    value = moves.reward * tours.size.sum() - total_time(tours)
     for _ in range(iterations):
         changed[:] = False
-        remove_strings(problem, trial, changed, removals, rng)
-        if by_deadline > 0.0 and rng.random() < by_deadline:  # where there is no choice, nothing is drawn
-            fill_by_deadline(problem, trial, changed, blink, rng)
+        remove_strings(problem, trial, changed, moves.removals, rng)
+        if moves.by_deadline > 0.0 and rng.random() < moves.by_deadline:  # where there is no choice, nothing is drawn
+            fill_by_deadline(problem, trial, changed, moves.blink, rng)
         else:
             for task in range(n):
                 if trial.robot[task] < 0:
-                    weight[task] = 1.0 + noise * rng.random()
-            fill(problem, trial, shift, changed, weight)
-        new_value = reward * trial.size.sum() - total_time(trial)
-        if new_value > value + temperature * math.log(1.0 - rng.random()):
+                    weight[task] = 1.0 + moves.noise * rng.random()
+            fill(problem, trial, state.shift, changed, weight)
+        new_value = moves.reward * trial.size.sum() - total_time(trial)
+        if new_value > value + moves.temperature * math.log(1.0 - rng.random()):
             value = new_value
             for robot in range(m):
                 if changed[robot]:
@@ -256,7 +270,7 @@ def anneal(
             tours.robot[:] = trial.robot
             if tours.size.sum() > most:
                 most = tours.size.sum()
-                copy_tours(tours, best)
+                copy_tours(tours, state.best)
         else:
             for robot in range(m):
                 if changed[robot]:
@@ -268,10 +282,10 @@ def anneal(
 def remove_strings(
     problem: Problem, tours: Tours, changed: npt.NDArray[np.bool_], removals: float, rng: np.random.Generator
 ) -> None:
-    """Remove a string of visits from some tours that pass near a random task, and mark those tours.
+    """Remove a string of visits from each of some tours that pass near a random task, and mark those tours.
 
-    Lengths and number of strings are drawn as by Christiaens and Vanden Berghe (2020), §5.1: no longer than the mean
-    tour, `removals` visits on average.
+    Lengths and number of strings are drawn as in Christiaens and Vanden Berghe (2020), §5.1: no longer than the mean
+    tour, with `removals` visits in all on average.
     """
     visits = tours.size.sum()
     if visits == 0:
@@ -298,7 +312,7 @@ def remove_strings(
 
 @compiled
 def total_time(tours: Tours) -> float:
-    """The time until each robot is through with its tour, summed over the robots."""
+    """The time at which each robot finishes its tour, summed over the robots."""
     total = 0.0
     for robot in range(len(tours.size)):
         if tours.size[robot] > 0:

@@ -1,16 +1,14 @@
 """Iterated local search for TAPTC, after ILS for the team orienteering problem with time windows.
 
 Source: P. Vansteenwegen, W. Souffriau, G. Vanden Berghe, D. Van Oudheusden, "Iterated local search for the team
-orienteering problem with time windows", Computers & Operations Research 36 (2009). Its adaptation to TAPTC, which the
-paper compares with, is inferred: tours are open, start at the robot at time 0, windows have no opening, and every task
-has the score 1. Nothing in it is drawn at random.
+orienteering problem with time windows", Computers & Operations Research 36 (2009). The paper compares with
+an adaptation to TAPTC, which is inferred here: tours are open and start at the robot at time 0, windows are open from
+the beginning, and every task has the score 1. It draws nothing at random.
 """
 
 from __future__ import annotations
 
-import time
 from functools import cache, partial
-from threading import Event
 
 import numpy as np
 import numpy.typing as npt
@@ -21,23 +19,24 @@ from mrta_zoo.policies.classical.local_search.insertion import fill
 from mrta_zoo.policies.classical.local_search.problem import Problem, make_problem, smallest_scenario
 from mrta_zoo.policies.classical.local_search.tours import Tours, copy_tours, empty_tours, plan_of, remove
 from mrta_zoo.policies.interruption import interruptible
+from mrta_zoo.policies.stop import Cancellation, FirstOf, NoImprovement, StoppingCriterion, TimeLimit
 from mrta_zoo.scenario import FloatArray, Scenario
 
 ROUNDS_WITHOUT_IMPROVEMENT = 150
 """After so many the search ends (Vansteenwegen et al. 2009, §4)."""
 CHUNK = 10
-"""Rounds between two looks at the clock."""
+"""Rounds between two checks whether to stop."""
 
 START, COUNT, IDLE = range(3)
-"""Where in the state the shake's position S and length R, and the number of rounds without improvement, stand."""
+"""Indices into the search's state: the shake's position S and length R, and the rounds without improvement."""
 
 
 class IlsSolver:
-    """Plans by iterated local search. Making the first one compiles it, some 20 seconds on a machine new to it.
+    """Plans by iterated local search. The first instance compiles it: some 20 seconds on a new machine.
 
     Args:
-        budget: seconds a scenario, > 0; by default the search ends after `ROUNDS_WITHOUT_IMPROVEMENT`, and the plan
-            does not depend on the machine.
+        budget: seconds per scenario, > 0. By default the search ends after `ROUNDS_WITHOUT_IMPROVEMENT`, and the plan
+            is the same on every machine.
     """
 
     def __init__(self, budget: float | None = None) -> None:
@@ -46,26 +45,27 @@ class IlsSolver:
 
     def solve(self, scenario: Scenario) -> Plan:
         """A plan for `scenario`."""
-        stopped = Event()
-        return interruptible(partial(_solve, scenario, self._budget, stopped), stopped.set)
+        own = NoImprovement(ROUNDS_WITHOUT_IMPROVEMENT) if self._budget is None else TimeLimit.of(self._budget)
+        cancellation = Cancellation()
+        stop = FirstOf((own, cancellation))
+        return interruptible(partial(_solve, scenario, stop), cancellation.cancel)
 
 
 @cache
 def compile_once() -> None:
     """Compile the search, so that no plan has to wait for it."""
-    interruptible(partial(_solve, smallest_scenario(), None, Event()))
+    interruptible(partial(_solve, smallest_scenario(), NoImprovement(1)))
 
 
-def _solve(scenario: Scenario, budget: float | None, stopped: Event) -> Plan:
-    begun = time.perf_counter()
+def _solve(scenario: Scenario, stop: StoppingCriterion) -> Plan:
     problem = make_problem(scenario)
     tours, best, shift = empty_tours(problem), empty_tours(problem), np.empty(problem.work.shape)
     state = np.array([0, 1, 0])
-    over = False
-    while not over and not stopped.is_set():
+    rounds, progress = 0, 0.0
+    while progress < 1.0:
         search(problem, tours, best, shift, state, CHUNK)
-        idle = state[IDLE] >= ROUNDS_WITHOUT_IMPROVEMENT
-        over = idle if budget is None else time.perf_counter() - begun >= budget
+        rounds += CHUNK
+        progress = stop.progress(rounds, int(state[IDLE]))
     return plan_of(best, scenario, "ils")
 
 
@@ -73,9 +73,9 @@ def _solve(scenario: Scenario, budget: float | None, stopped: Event) -> Plan:
 def search(
     problem: Problem, tours: Tours, best: Tours, shift: FloatArray, state: npt.NDArray[np.int64], rounds: int
 ) -> None:
-    """Some rounds of insertion and shake, going on from `tours` and `state`, which are changed as `best` is.
+    """Some more rounds of insertion and shake. `tours`, `best` and `state` are changed in place.
 
-    R starts anew at floor(N / (3M)) (Vansteenwegen et al. 2009).
+    R starts again from 1 once it is floor(N / (3M)) (Vansteenwegen et al. 2009).
     """
     m, n = problem.work.shape
     changed, weight = np.empty(m, dtype=np.bool_), np.ones(n)
@@ -100,7 +100,7 @@ def search(
 
 @compiled
 def shake(problem: Problem, tours: Tours, start: int, count: int) -> None:
-    """In every tour remove `count` consecutive visits from position `start` on, going on at its beginning."""
+    """Remove `count` consecutive visits from every tour, from position `start` on, wrapping around at its end."""
     for robot in range(len(tours.size)):
         size = tours.size[robot]
         if size > 0:

@@ -20,7 +20,7 @@ from mrta_zoo.verify import verify
 pytest.importorskip("numba")
 
 from mrta_zoo.policies.classical.local_search import eils
-from mrta_zoo.policies.classical.local_search.eils import EilsConfig, EilsSolver, anneal
+from mrta_zoo.policies.classical.local_search.eils import Annealing, EilsConfig, EilsSolver, Moves, anneal
 from mrta_zoo.policies.classical.local_search.ils import IlsSolver, shake
 from mrta_zoo.policies.classical.local_search.insertion import fill, fill_by_deadline
 from mrta_zoo.policies.classical.local_search.problem import Problem, make_problem
@@ -131,7 +131,9 @@ def test_tours_are_what_the_verifier_says_after_any_change(scenario: Scenario) -
     trial, best = empty_tours(problem), empty_tours(problem)
     copy_tours(tours, trial)
     copy_tours(tours, best)
-    anneal(problem, tours, trial, best, positions, np.ones(scenario.num_tasks), 20, 5.0, 4.0, 0.5, 0.5, 0.1, 100.0, rng)
+    state = Annealing(tours, trial, best, positions, np.ones(scenario.num_tasks))
+    moves = Moves(temperature=5.0, removals=4.0, noise=0.5, by_deadline=0.5, blink=0.1, reward=100.0)
+    anneal(problem, state, 20, moves, rng)
     for each in (tours, trial, best):
         check(problem, scenario, each)
     assert route(trial) == route(tours)
