@@ -247,9 +247,9 @@ def anneal(problem: Problem, state: Annealing, iterations: int, moves: Moves, rn
         rng: of all draws.
     """
     m, n = problem.work.shape
-    tours, trial, weight = state.current, state.trial, state.weight
+    tours, trial, best, shift, weight = state
     changed = np.zeros(m, dtype=np.bool_)
-    most = state.best.size.sum()
+    most = best.size.sum()
     value = moves.reward * tours.size.sum() - total_time(tours)
     for _ in range(iterations):
         changed[:] = False
@@ -260,7 +260,7 @@ def anneal(problem: Problem, state: Annealing, iterations: int, moves: Moves, rn
             for task in range(n):
                 if trial.robot[task] < 0:
                     weight[task] = 1.0 + moves.noise * rng.random()
-            fill(problem, trial, state.shift, changed, weight)
+            fill(problem, trial, shift, changed, weight)
         new_value = moves.reward * trial.size.sum() - total_time(trial)
         if new_value > value + moves.temperature * math.log(1.0 - rng.random()):
             value = new_value
@@ -270,7 +270,7 @@ def anneal(problem: Problem, state: Annealing, iterations: int, moves: Moves, rn
             tours.robot[:] = trial.robot
             if tours.size.sum() > most:
                 most = tours.size.sum()
-                copy_tours(tours, state.best)
+                copy_tours(tours, best)
         else:
             for robot in range(m):
                 if changed[robot]:

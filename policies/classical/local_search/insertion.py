@@ -1,6 +1,8 @@
-"""Putting unvisited tasks where they cost the least time: always the cheapest (ILS), or one by one, by deadline."""
+"""Insertion of unvisited tasks where they cost the least time: the cheapest first (ILS), or by deadline."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -11,24 +13,40 @@ from mrta_zoo.policies.classical.local_search.tours import Tours, insert
 from mrta_zoo.scenario import FloatArray
 
 
+class Candidates(NamedTuple):
+    """The tasks that may be inserted, and what is known of where each fits best.
+
+    Attributes:
+        task: (U,) the unvisited tasks; as they get fewer, those that are left come first.
+        weight: (N,) > 0, factor of the Shift of each task.
+        shift: (M, N) a lower bound of the least Shift of each task in each tour.
+        position: (M, N) where in the tour that Shift was found.
+    """
+
+    task: npt.NDArray[np.int64]
+    weight: FloatArray
+    shift: FloatArray
+    position: npt.NDArray[np.int64]
+
+
 @compiled
 def fill(
     problem: Problem, tours: Tours, shift: FloatArray, open_tours: npt.NDArray[np.bool_], weight: FloatArray
 ) -> None:
-    """Insert the task and position with the least weighted Shift, again and again, until nothing fits.
+    """Insert the task with the least weighted Shift at the position that has it, repeatedly, until nothing fits.
 
     With equal scores for all tasks, the greatest score² / Shift of ILS is the least Shift. Ties go to the lowest
     robot, then the lowest task.
 
-    An insertion takes a leg from a tour, gives it two, and leaves less room at all others. So what was looked up stays
-    a lower bound if the two are looked up as well, and only what a bound says is best must be looked up once more.
+    An insertion replaces one leg of a tour by two and leaves less room at all others. So known Shifts remain lower
+    bounds once the two new legs are considered, and only the candidate with the least bound must be checked again.
 
     Args:
         problem: the scenario.
-        tours: is filled.
-        shift: (M, N) scratch space, for a lower bound of the least Shift of each task in each tour.
+        tours: the tours to fill, changed in place.
+        shift: (M, N) scratch space.
         open_tours: (M,) the tours that may get tasks.
-        weight: (N,) > 0, what the Shift of each task is multiplied by.
+        weight: (N,) > 0, factor of the Shift of each task.
     """
     m = len(problem.speed)
     best_task, best_value = np.full(m, -1), np.full(m, np.inf)
@@ -36,14 +54,14 @@ def fill(
     over = False
     while not over:
         failed, over = False, True
-        free = np.flatnonzero(tours.robot < 0)
-        unvisited = len(free)
+        candidates = Candidates(np.flatnonzero(tours.robot < 0), weight, shift, place)
+        unvisited = len(candidates.task)
         for robot in range(m):
             if open_tours[robot]:
                 for index in range(unvisited):
-                    task = free[index]
+                    task = candidates.task[index]
                     place[robot, task], shift[robot, task] = _best_position(problem, tours, task, robot)
-                best_task[robot], best_value[robot] = _choose(shift, robot, weight, free, unvisited)
+                best_task[robot], best_value[robot] = _choose(candidates, unvisited, robot)
         while True:
             winner = int(best_value.argmin())
             if best_value[winner] == np.inf:
@@ -52,7 +70,7 @@ def fill(
             position, least = _best_position(problem, tours, task, winner)
             if least > shift[winner, task]:  # there is less room than there was
                 place[winner, task], shift[winner, task] = position, least
-                best_task[winner], best_value[winner] = _choose(shift, winner, weight, free, unvisited)
+                best_task[winner], best_value[winner] = _choose(candidates, unvisited, winner)
                 continue
             inserted = insert(problem, tours, task, winner, position)
             if not inserted:  # the look-up was wrong by a rounding error
@@ -63,13 +81,13 @@ def fill(
                     inserted = insert(problem, tours, task, winner, position)
             if inserted:
                 over = not failed  # what has failed may fit now, by rounding: look everything up once more
-                unvisited = _forget(free, unvisited, task)
-                _look_up_legs(problem, tours, shift, place, winner, position, free, unvisited)
+                unvisited = _forget(candidates.task, unvisited, task)
+                _look_up_legs(problem, tours, candidates, unvisited, winner, position)
             else:
                 shift[winner, task] = np.inf
             for other in range(m):
                 if other == winner or (inserted and best_task[other] == task):
-                    best_task[other], best_value[other] = _choose(shift, other, weight, free, unvisited)
+                    best_task[other], best_value[other] = _choose(candidates, unvisited, other)
 
 
 @compiled
@@ -78,14 +96,14 @@ def fill_by_deadline(
 ) -> None:
     """Insert the unvisited tasks, the earliest deadline first, each where its Shift is least, if it fits at all.
 
-    After the recreation of Christiaens and Vanden Berghe (2020), which inserts in an order and "blinks"; the order is
-    ours, and a blink passes over a whole tour, not a position.
+    This follows the recreate step of Christiaens and Vanden Berghe (2020), which inserts tasks in some order and
+    "blinks". The order is ours, and a blink skips a whole tour, not a position.
 
     Args:
         problem: the scenario.
-        tours: is filled.
+        tours: the tours to fill, changed in place.
         open_tours: (M,) the tours that may get tasks.
-        blink: probability with which a task is not offered to a tour.
+        blink: probability that a tour is skipped for a task.
         rng: of the blinks.
     """
     for task in problem.by_deadline:
@@ -103,7 +121,7 @@ def fill_by_deadline(
 
 @compiled
 def _forget(free: npt.NDArray[np.int64], unvisited: int, task: int) -> int:
-    """Take `task` from the first `unvisited` of `free`, and give how many are left."""
+    """Remove `task` from the first `unvisited` of `free`; how many are left."""
     position = 0
     while free[position] != task:
         position += 1
@@ -113,14 +131,12 @@ def _forget(free: npt.NDArray[np.int64], unvisited: int, task: int) -> int:
 
 
 @compiled
-def _choose(
-    shift: FloatArray, robot: int, weight: FloatArray, free: npt.NDArray[np.int64], unvisited: int
-) -> tuple[int, float]:
-    """Of the first `unvisited` of `free`, the least weighted Shift's task, and that; (-1, inf) if none fits."""
+def _choose(candidates: Candidates, unvisited: int, robot: int) -> tuple[int, float]:
+    """Of the first `unvisited` tasks that with the least weighted Shift, and this; (-1, inf) if none fits."""
     chosen, least = -1, np.inf
     for index in range(unvisited):
-        task = free[index]
-        value = shift[robot, task] * weight[task]
+        task = candidates.task[index]
+        value = candidates.shift[robot, task] * candidates.weight[task]
         if value < least:
             chosen, least = task, value
     return chosen, least
@@ -128,27 +144,19 @@ def _choose(
 
 @compiled
 def _look_up_legs(
-    problem: Problem,
-    tours: Tours,
-    shift: FloatArray,
-    place: npt.NDArray[np.int64],
-    robot: int,
-    first: int,
-    free: npt.NDArray[np.int64],
-    unvisited: int,
+    problem: Problem, tours: Tours, candidates: Candidates, unvisited: int, robot: int, first: int
 ) -> None:
-    """Bring a tour's rows of `shift` and `place` up to date with a visit inserted at position `first`.
+    """Update a tour's Shifts and positions for the visit just inserted at position `first`.
 
     Args:
         problem: the scenario.
-        tours: the tours.
-        shift: (M, N) lower bounds of the least Shift of each task.
-        place: (M, N) the position that each bound is for.
-        robot: whose tour.
-        first: where its new visit is.
-        free: of which the first `unvisited` are looked at.
-        unvisited: how many.
+        tours: the tours, with the visit.
+        candidates: whose rows of `robot` are updated.
+        unvisited: how many of their tasks are left.
+        robot: whose tour it is.
+        first: position of the visit.
     """
+    shift, place = candidates.shift, candidates.position
     distance, pace, size = problem.distance, 1.0 / problem.speed[robot], tours.size[robot]
     before, ready = len(problem.deadline) + robot, 0.0
     if first > 0:
@@ -161,8 +169,8 @@ def _look_up_legs(
         after, after_leg = tours.tasks[robot, first + 1], tours.leg[robot, first + 1]
         after_slack = tours.max_shift[robot, first + 1] + tolerance
     for index in range(unvisited):
-        task = free[index]
-        if place[robot, task] == first:  # on the leg that is no more
+        task = candidates.task[index]
+        if place[robot, task] == first:  # on the leg that is gone
             place[robot, task], shift[robot, task] = _best_position(problem, tours, task, robot)
             continue
         if place[robot, task] > first:
