@@ -10,7 +10,7 @@ from mrta_zoo.errors import MissingExtraError, MrtaError
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.io import Case
 from mrta_zoo.plan import Plan
-from mrta_zoo.policies.protocol import NeedsWarmUp, Solver
+from mrta_zoo.policies.protocol import Solver, SupportsWarmUp
 from mrta_zoo.policies.registry import POLISH, make_solver, method_names
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import Score, verify
@@ -71,7 +71,7 @@ class NamedSolver:
         Raises:
             MrtaError: if the solver fails, or its plan does not fit the scenario; the message names method and case.
         """
-        if not self._warm and isinstance(self._solver, NeedsWarmUp):
+        if not self._warm and isinstance(self._solver, SupportsWarmUp):
             self._solver.warm_up(case.scenario)
         self._warm = True
         try:

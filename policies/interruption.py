@@ -1,4 +1,4 @@
-"""Long work that Ctrl-C ends at once, though Python's own waiting or compiled code would hold it up or crash."""
+"""Long jobs that Ctrl-C ends at once, where Python's own waiting would delay it and compiled code could crash."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from typing import TypeVar
 Result = TypeVar("Result")
 
 POLL = 0.1
-"""Seconds between two looks at whether Ctrl-C was pressed, where waiting cannot be interrupted (Windows)."""
+"""Seconds between two checks for Ctrl-C where waiting cannot be interrupted (Windows)."""
 
 
-def side_by_side(jobs: Sequence[Callable[[], Result]], stop: Callable[[], None]) -> list[Result]:
-    """What each job gives. The first runs in this thread, so that Ctrl-C reaches it, the others in one each.
+def run_in_parallel(jobs: Sequence[Callable[[], Result]], cancel: Callable[[], None]) -> list[Result]:
+    """The jobs' results. The first job runs in this thread, where Ctrl-C reaches it, and the others in one thread each.
 
     Args:
-        jobs: one at least.
-        stop: makes all of them end soon; called when one fails or is interrupted, whose exception then comes out.
+        jobs: at least one.
+        cancel: makes all of them end soon; called when one fails or is interrupted, and its exception is raised.
     """
 
     def run(job: Callable[[], Result]) -> Result:
         try:
             return job()
         except BaseException:
-            stop()
+            cancel()
             raise
 
     if len(jobs) == 1:
@@ -35,16 +35,16 @@ def side_by_side(jobs: Sequence[Callable[[], Result]], stop: Callable[[], None])
         return [run(jobs[0]), *(other.result() for other in others)]
 
 
-def interruptible(job: Callable[[], Result], stop: Callable[[], None] | None = None) -> Result:
-    """What a job gives that Ctrl-C must not reach, such as compiled code.
+def interruptible(job: Callable[[], Result], cancel: Callable[[], None] | None = None) -> Result:
+    """The result of a job that Ctrl-C must not reach, such as compiled code.
 
-    It runs in a thread of its own: Python raises what a signal's handler raises in the main thread alone, and there
-    perhaps amid what Numba does to hand over arguments, which then crashes.
+    The job runs in a thread of its own. Python runs signal handlers in the main thread only, and an exception raised
+    there while Numba unpacks arguments can crash the process.
 
     Args:
         job: the work.
-        stop: makes it end soon; called after Ctrl-C, and the end is then waited for. Without it the job goes on there
-            until it ends or the process does, but nobody waits.
+        cancel: makes it end soon; called after Ctrl-C, which then waits for the end. Without it nobody waits, and the
+            job runs on until it or the process ends.
     """
     found: Future[Result] = Future()
 
@@ -60,8 +60,8 @@ def interruptible(job: Callable[[], Result], stop: Callable[[], None] | None = N
         while thread.is_alive():
             thread.join(POLL)
     except BaseException:
-        if stop is not None:
-            stop()
+        if cancel is not None:
+            cancel()
             if thread.is_alive():  # else it was interrupted as it began
                 thread.join()
         raise

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Literal, get_args
 
 from mrta_zoo.bounds import check_seed, check_threads
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.policies.stop import check_budget
 from mrta_zoo.rules import MaskRule, check_mask_rule
 
 Decode = Literal["greedy", "sample", "augment", "beam"]
@@ -59,8 +59,8 @@ class SolverOptions:
             raise ConfigError(f"decode is {self.decode!r}; expected one of {', '.join(get_args(Decode))}")
         if self.samples is not None and not 1 <= self.samples <= MAX_SAMPLES:
             raise ConfigError(f"samples is {self.samples}; expected a whole number from 1 to {MAX_SAMPLES}")
-        if self.budget is not None and not 0 < self.budget < math.inf:
-            raise ConfigError(f"budget is {self.budget:g}; expected a number of seconds > 0")
+        if self.budget is not None:
+            check_budget(self.budget)
         if self.mask_rule is not None:
             check_mask_rule(self.mask_rule)
         check_threads(self.threads, least=1)

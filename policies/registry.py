@@ -23,6 +23,7 @@ from mrta_zoo.policies.neural.policy_files import SUFFIX
 from mrta_zoo.policies.options import Decode, SolverOptions
 from mrta_zoo.policies.pretrained import pretrained_names
 from mrta_zoo.policies.protocol import Policy, Solver
+from mrta_zoo.policies.stop import TimeLimit
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
 
@@ -98,7 +99,7 @@ class LearnedSolver:
         """What plans are signed with."""
         return self.policy.name
 
-    def solve_within(self, scenario: Scenario, seconds: float) -> Plan | None:
+    def solve_within(self, scenario: Scenario, limit: TimeLimit) -> Plan | None:
         """The plan without a search if the policy searches only on a budget, else the best found in that time.
 
         None if not even the first greedy mission is finished in time.
@@ -106,7 +107,7 @@ class LearnedSolver:
         options = self.options
         return self.policy.solve_within(
             scenario,
-            seconds,
+            limit.left(),
             decode=options.decode or "greedy",
             samples=options.samples,
             mask_rule=options.mask_rule,

@@ -88,6 +88,10 @@ class TimeLimit:
         """From now on until the same end."""
         return TimeLimit(time.perf_counter(), self.end)
 
+    def spent(self) -> float:
+        """Seconds since it began."""
+        return time.perf_counter() - self.begin
+
     def left(self) -> float:
         """Seconds until the end, 0 after it."""
         return max(0.0, self.end - time.perf_counter())

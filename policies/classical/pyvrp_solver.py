@@ -1,12 +1,10 @@
-"""PyVRP, an open solver of vehicle routing problems, as the strong reference.
+"""PyVRP, an open-source solver of vehicle routing problems, as a strong reference.
 
 Wouda, Lan and Kool, "PyVRP: a high-performance VRP solver package", INFORMS Journal on Computing 36 (2024).
 """
 
 from __future__ import annotations
 
-import math
-import time
 import warnings
 from typing import Any
 
@@ -17,6 +15,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.classical.exact.task_sets import IntArray, within_reach
 from mrta_zoo.policies.classical.on_time import Routes, on_time
+from mrta_zoo.policies.stop import TimeLimit, check_budget
 from mrta_zoo.reach import in_time
 from mrta_zoo.rules import travel_time
 from mrta_zoo.scales import frame_of, slack_time, useful_robots
@@ -24,50 +23,50 @@ from mrta_zoo.scenario import Scenario
 
 BUDGET = 5.0
 RESOLUTION = 10**7
-"""Model time units until the latest deadline, or until the time beyond which none counts."""
+"""Model time units until the latest deadline, or until the time beyond which no deadline binds."""
 LATEST = 4.0
-"""Deadlines count up to so many times `mrta_zoo.scales.slack_time`, beyond which they cannot bind."""
+"""Deadlines are cut at this many times `mrta_zoo.scales.slack_time`, beyond which they cannot bind."""
 WARPS = (2e-5, 2e-6, 2e-4)
-"""What a model time unit of lateness costs at most during the search, in prizes. A search starts at half of it and
-adapts it, so that it passes through plans that are late, but finds some that are not. The first value is the best for
-large scenarios; if it starts anew, the search tries the others in turn."""
+"""Largest penalty of a model time unit of lateness, in prizes. The search starts at half of it and adapts it, so that
+it passes through late plans but also finds plans in time. The first value is the best for large scenarios; a search
+that starts again tries the others in turn."""
 NEIGHBOURS = 20
 PATIENCE = 2
-"""Iterations for each pair of tasks without improvement, after which hardly any follows and the search starts anew."""
+"""Iterations without improvement per pair of tasks before the search starts again; further ones hardly find any."""
 SEARCHES = 20
-"""How often it starts at most."""
+"""Most searches per mission."""
 
 
 class PyVrpSolver:
-    """Models the mission exactly, as a prize-collecting routing problem with time windows.
+    """Models the mission exactly, as a prize-collecting vehicle routing problem with time windows.
 
-    Every robot is a vehicle type of its own that starts at its own depot and ends at a dummy one, to which every way
-    is free; going to a task takes the way and the work there, at the robot's own speed and capacity; each task is an
-    optional client with a deadline and a prize. The travel time costs, too: the search needs it to tell routes with
-    as many tasks apart, and finds far more tasks with it. The prize is larger than all that robots can travel in
-    time, so that one more task is always worth it.
+    Every robot is a vehicle type of its own. It starts at its own depot and ends at a dummy depot, to which travel is
+    free. The duration to a task is travel and work, at the robot's own speed and capacity. Each task is an optional
+    client with a deadline and a prize. Travel time costs as well: the search needs it to tell routes with equally many
+    tasks apart, and finds far more tasks with it. The prize is larger than all that robots can travel in time, so that
+    one more task is always worth it.
 
-    No task is planned to end later than at `LATEST` times the time by which all that can wait could be done: that
-    costs no task, and leaves the durations their digits where one deadline is far beyond all others.
+    No task is planned to end later than `LATEST` times the time by which all that can wait could be done. This costs no
+    task, and durations keep their digits where one deadline is far beyond all others.
 
-    PyVRP counts in integers. Durations are rounded down and deadlines up, so that what is in time in floating-point
-    arithmetic is in time there, also where a deadline is met exactly. What only the model finds in time is dropped
-    from the plan. What is planned is finished by its deadline, whatever the mask rule.
+    PyVRP counts in integers. Durations are rounded down and deadlines up, so that a route in time in floating-point
+    arithmetic is in time there, even where a deadline is met exactly. Visits that only the model finds in time are
+    dropped from the plan. Every planned task is finished by its deadline, whatever the mask rule.
 
     Args:
         seed: of the search, from 0 to `bounds.MAX_SEED`; PyVRP's own have 32 bits.
-        budget: seconds a scenario, > 0, not counting what it takes to build the model and the first solution. It stops
-            earlier if all tasks are done that are within reach, or several searches have stalled.
-        iterations: stop after so many, too, >= 1; then the same seed gives the same plan, if the budget suffices.
+        budget: seconds per scenario, > 0; None is `BUDGET`. Building the model and the first solution comes on top.
+            The search ends earlier if all tasks within reach are done, or several searches have stalled.
+        iterations: most iterations, >= 1. With it, the same seed gives the same plan if the budget suffices.
 
     Raises:
         ConfigError: if an argument is out of range.
     """
 
-    def __init__(self, seed: int = 0, budget: float = BUDGET, iterations: int | None = None) -> None:
+    def __init__(self, seed: int = 0, budget: float | None = None, iterations: int | None = None) -> None:
+        budget = BUDGET if budget is None else budget
         check_seed(seed)
-        if not 0 < budget < math.inf:
-            raise ConfigError(f"budget is {budget:g}; expected a number of seconds > 0")
+        check_budget(budget)
         if iterations is not None and iterations < 1:
             raise ConfigError(f"iterations is {iterations}; expected a whole number >= 1")
         self._seed, self._budget, self._iterations = seed, budget, iterations
@@ -89,11 +88,11 @@ class PyVrpSolver:
 
         prize = RESOLUTION * (scenario.num_robots + 1)
         model = _model(scenario, tasks, prize)
-        stop_at, left = time.perf_counter() + self._budget, self._iterations or 2**62
+        limit, left = TimeLimit.of(self._budget), self._iterations or 2**62
         best = None
         for search in range(SEARCHES):
             stop: list[Any] = [
-                MaxRuntime(max(0.0, stop_at - time.perf_counter())),
+                MaxRuntime(limit.left()),
                 MaxIterations(left),
                 NoImprovement(PATIENCE * len(tasks) ** 2),
                 lambda cost: cost < prize,  # all tasks are done
@@ -109,7 +108,7 @@ class PyVrpSolver:
             if best is None or found.cost() < best.cost():
                 best = found
             left -= found.num_iterations
-            if best.cost() < prize or left <= 0 or time.perf_counter() >= stop_at:
+            if best.cost() < prize or left <= 0 or limit.over:
                 break
         assert best is not None
         routes: list[list[int]] = [[] for _ in range(scenario.num_robots)]
@@ -156,9 +155,9 @@ def _model(scenario: Scenario, tasks: IntArray, prize: int) -> Any:
 
 
 def _units(times: Any, latest: float, end: int) -> IntArray:
-    """(L, L) times between locations in model units, rounded down; 0 on the way to any depot.
+    """(L, L) times between locations in model units, rounded down; 0 to any depot.
 
-    What is longer than there is time is cut, as integers have a greatest.
+    Times longer than the mission are cut, so that they fit an integer.
     """
     units: IntArray = np.floor(np.minimum(times / latest, 2.0) * RESOLUTION).astype(np.int64)
     units[:, : end + 1] = 0

@@ -14,14 +14,15 @@ import numpy as np
 import pytest
 
 from mrta_zoo.generators import TaptcGenerator
-from mrta_zoo.policies.interruption import interruptible, side_by_side
+from mrta_zoo.policies.interruption import interruptible, run_in_parallel
 from mrta_zoo.policies.registry import make_solver
+from mrta_zoo.policies.stop import TimeLimit
 
 pytest.importorskip("numba")
 
 from numba.core.dispatcher import Dispatcher
 
-from mrta_zoo.policies.classical.exact import relaxation, set_choice
+from mrta_zoo.policies.classical.exact import relaxation, selection
 from mrta_zoo.policies.classical.local_search import eils, ils, insertion, tours
 
 CASE = TaptcGenerator(tasks=(40, 40), robots=(3, 3))(np.random.default_rng(3))
@@ -111,8 +112,8 @@ def test_what_cannot_be_stopped_is_not_waited_for(
     work: Callable[[], object]
     if what == "integer-program":
         monkeypatch.setattr("scipy.optimize.milp", long_job)
-        team = set_choice.Team([0], np.array([[0], [1]]))
-        work = partial(set_choice.choose_sets, [team], 2, disjoint=False, seconds=BUDGET)
+        team = selection.Team([0], np.array([[0], [1]]))
+        work = partial(selection.select_sets, [team], 2, disjoint=False, limit=TimeLimit.of(BUDGET))
     elif what == "linear-program":
         monkeypatch.setattr("scipy.optimize.linprog", long_job)
         work = partial(relaxation.most_completable, CASE)
@@ -136,7 +137,7 @@ def test_jobs_give_what_they_give_and_raise_what_they_raise() -> None:
         threads.add(threading.get_ident())
         return number
 
-    assert side_by_side([partial(job, number) for number in range(3)], lambda: None) == [0, 1, 2]
+    assert run_in_parallel([partial(job, number) for number in range(3)], lambda: None) == [0, 1, 2]
     assert threading.get_ident() in threads
     assert interruptible(partial(job, 7)) == 7
     assert interruptible(partial(job, 7), lambda: None) == 7
@@ -156,5 +157,5 @@ def test_where_one_job_fails_the_others_are_stopped(failing: int) -> None:
 
     begun = time.perf_counter()
     with pytest.raises(MemoryError, match="here"):
-        side_by_side([fail, wait] if failing == 0 else [wait, fail], stop.set)
+        run_in_parallel([fail, wait] if failing == 0 else [wait, fail], stop.set)
     assert time.perf_counter() - begun < AT_ONCE

@@ -5,7 +5,6 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 from installed import skip_unless_installed
@@ -145,22 +144,3 @@ def test_any_method_can_be_polished() -> None:
         assert verify(scenario, polished).completed >= verify(scenario, plan).completed
     with pytest.raises(ConfigError, match="no method 'neerest'"):
         make_solver("neerest+polish")
-
-
-def test_the_search_has_what_the_method_leaves_of_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
-    polish = pytest.importorskip("mrta_zoo.policies.classical.local_search.polish")
-    scenario = seeded_scenarios(7, 1)[0]
-    budgets = []
-
-    class Spy(polish.EilsSolver):  # type: ignore[misc, name-defined]
-        def __init__(self, seed: int = 0, budget: float | None = None) -> None:
-            super().__init__(seed, 0.01)
-            budgets.append(budget)
-
-    monkeypatch.setattr(polish, "EilsSolver", Spy)
-    for seconds in (0.5, 3.0):  # that the method takes
-        clock = iter([10.0, 10.0 + seconds])
-        solver = make_solver("nearest+polish", budget=2.0)
-        monkeypatch.setattr(polish, "time", SimpleNamespace(perf_counter=clock.__next__))
-        solver.solve(scenario)
-    assert budgets == [None, 1.5, None, polish.LEAST_BUDGET]

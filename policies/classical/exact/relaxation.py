@@ -10,27 +10,28 @@ import numpy.typing as npt
 
 from mrta_zoo.policies.classical.exact.task_sets import ROUNDING
 from mrta_zoo.policies.interruption import interruptible
+from mrta_zoo.policies.stop import TimeLimit
 from mrta_zoo.reach import first_finish
 from mrta_zoo.rules import travel_time, visit
 from mrta_zoo.scenario import FloatArray, Scenario
 
 MOST_TASKS = 2000
-"""With more only those within reach are counted: all distances would take gigabytes."""
+"""With more tasks, those within reach are counted instead: all distances would take gigabytes."""
 MOST_ENTRIES = 200_000
-"""Of the linear program's matrix; beyond, some deadlines are left out, which weakens the bound."""
+"""Of the linear program's matrix. Beyond that some deadlines are left out, which weakens the bound."""
 
 
-def most_completable(scenario: Scenario, seconds: float = math.inf) -> int:
-    """A number of tasks that no plan can exceed.
+def most_completable(scenario: Scenario, limit: TimeLimit | None = None) -> int:
+    """An upper bound on the number of tasks that a plan completes.
 
-    A task takes a robot at least the way from the nearest place that it can come from, and the work. What a robot
-    completes by a time D must fit between 0 and D, for each deadline D. Robots that are alike are taken together, and
-    tasks may be done in parts, in any order and place: a linear program. Any prices of its constraints prove a bound
-    (weak duality); those that HiGHS finds need not be exact for that. Times have some slack for rounding.
+    A task takes a robot at least the travel from the nearest place that it can come from, and the work. What a robot
+    completes by a time D must fit between 0 and D, for each deadline D. Pooling robots of one kind, and letting tasks
+    be done in parts, in any order and place, makes this a linear program. Any prices of its constraints prove a bound
+    (weak duality), even if HiGHS finds them inexactly. Times have some slack for rounding.
 
     Args:
         scenario: the scenario.
-        seconds: how long it may take; then the tasks within reach are counted.
+        limit: after it the bound is the number of tasks within reach.
     """
     finish = first_finish(scenario)
     latest = scenario.deadline * (1 + ROUNDING)
@@ -42,18 +43,18 @@ def most_completable(scenario: Scenario, seconds: float = math.inf) -> int:
     least = [_least_durations(scenario, robots, finish[robots].min(axis=0), latest) for robots in groups]
     most = max(1, MOST_ENTRIES // (len(groups) * scenario.num_tasks))
     shares = [_shares(each, latest, len(robots), most) for each, robots in zip(least, groups, strict=True)]
-    return min(within_reach, _dual_bound(shares, np.isfinite(least), seconds))
+    return min(within_reach, _dual_bound(shares, np.isfinite(least), limit))
 
 
 def _least_durations(
     scenario: Scenario, robots: npt.NDArray[np.intp], finish: FloatArray, latest: FloatArray
 ) -> FloatArray:
-    """(N,) the least time that each task takes one of `robots`, which are alike; infinite if it is out of their reach.
+    """(N,) the least time that each task takes a robot of one kind; infinite if it is out of their reach.
 
     Args:
         scenario: the scenario.
-        robots: which.
-        finish: (N,) when one of them finishes each task at the earliest, as its first.
+        robots: the robots of that kind.
+        finish: (N,) the earliest time at which one of them finishes each task as its first.
         latest: (N,) deadlines with slack.
     """
     speed, capacity = scenario.speed[robots[0]], scenario.capacity[robots[0]]
@@ -67,8 +68,8 @@ def _least_durations(
 
 
 def _shares(least: FloatArray, latest: FloatArray, robots: int, most: int) -> FloatArray:
-    """(K, N) for at most `most` of the deadlines: the share of the robots' time until then that each task due by then
-    takes at least."""
+    """(K, N) for at most `most` deadlines: the least share of the robots' time until then that each task due by then
+    takes."""
     deadlines = np.unique(latest[np.isfinite(least)])
     if len(deadlines) > most:
         deadlines = deadlines[np.linspace(len(deadlines) - 1, 0, most).round().astype(int)]
@@ -76,13 +77,13 @@ def _shares(least: FloatArray, latest: FloatArray, robots: int, most: int) -> Fl
     return np.where(counts, least / (robots * deadlines[:, None]), 0.0)
 
 
-def _dual_bound(shares: list[FloatArray], possible: npt.NDArray[np.bool_], seconds: float) -> int:
+def _dual_bound(shares: list[FloatArray], possible: npt.NDArray[np.bool_], limit: TimeLimit | None) -> int:
     """The bound that the linear program's prices prove.
 
     Args:
         shares: for each kind of robot its rows of the program, see `_shares`.
         possible: (kinds, N) which tasks they can reach in time.
-        seconds: how long it may take; then the bound is N.
+        limit: after it the bound is N.
     """
     from scipy.optimize import linprog
     from scipy.sparse import block_diag, eye_array, hstack, vstack
@@ -93,7 +94,7 @@ def _dual_bound(shares: list[FloatArray], possible: npt.NDArray[np.bool_], secon
     limits = np.ones(matrix.shape[0])
     program = partial(
         linprog, -np.ones(matrix.shape[1]), A_ub=matrix, b_ub=limits, bounds=(0, 1), method="highs",
-        options={"time_limit": seconds},
+        options={"time_limit": math.inf if limit is None else limit.left()},
     )  # fmt: skip
     found = interruptible(program)
     if found.status != 0:

@@ -1,62 +1,61 @@
 """Plans that provably complete as many tasks as possible, for small scenarios.
 
-Dynamic programming for each robot, then set packing by an integer program; what the paper calls the exact ILP solution
-(§I), in a formulation whose optimum HiGHS proves in a second or two for 12 tasks and 3 robots.
+Dynamic programming for each robot, then set packing by an integer program. The paper speaks of the exact ILP solution
+(§I); HiGHS proves the optimum of this formulation in a second or two for 12 tasks and 3 robots.
 """
 
 from __future__ import annotations
 
-import math
-import time
-
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.classical.exact.relaxation import most_completable
-from mrta_zoo.policies.classical.exact.set_choice import Team, choose_sets
+from mrta_zoo.policies.classical.exact.selection import Team, select_sets
 from mrta_zoo.policies.classical.exact.task_sets import task_sets
 from mrta_zoo.policies.classical.local_search.eils import EilsSolver
 from mrta_zoo.policies.classical.on_time import Routes, on_time
+from mrta_zoo.policies.stop import TimeLimit, check_budget
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
 
 BUDGET = 60.0
 MAX_STATES = 4_000_000
 MAX_SETS = 2_000
-"""How many sets a kind of robot may choose from once there is nothing left to prove."""
+"""Sets that a kind of robot may choose from where optimality cannot be proven any more."""
 PROVABLE_SETS = 100_000
-"""More sets than this HiGHS does not get through in the time that it is given."""
+"""HiGHS does not get through more sets than this in its time."""
 BOUND_SHARE, SEARCH_SHARE = 0.1, 0.6
-"""When bounding and enumerating must be done, as shares of the budget; the rest is for the integer program."""
+"""Shares of the budget after which the bound and the task sets must be known. The rest is for the integer program."""
 
 
 class ExactSolver:
-    """Maximises the number of completed tasks, and says in `Plan.bound` what no plan can exceed.
+    """Maximises the number of completed tasks. `Plan.bound` is an upper bound on that number.
 
-    Every set of tasks that a robot can complete is found by dynamic programming (`task_sets`); an integer program,
-    solved by HiGHS, then picks one for each robot so that together they hold as many tasks as possible
-    (`set_choice`). With everything found and solved, the plan is optimal and the bound is its number of tasks.
-    Otherwise (too little time or memory, or more than 63 tasks within a robot's reach) the bound comes from a linear
-    program (`relaxation`), and the plan is the best of what was found and of local search (`local_search.eils`). Of
-    several optimal plans it gives always the same one, unless time runs out.
+    Dynamic programming (`task_sets`) finds every set of tasks that a robot can complete; an integer program, solved by
+    HiGHS, then selects one for each robot so that together they hold as many tasks as possible (`selection`). If both
+    are finished, the plan is optimal and the bound is its number of tasks. Otherwise (too little time or memory, or
+    more than 63 tasks within a robot's reach) the bound comes from a linear program (`relaxation`), and the plan is
+    the best of those found so far and of local search (`local_search.eils`). Of several optimal plans it always gives
+    the same one, unless time runs out.
 
-    The objective is the number of completed tasks because that is what the tables of the paper count. Eq. 1 is
-    another one: a completed task costs nothing there, any other at least 1, so that completing one more usually
-    pays. But a task that nobody takes costs the more the later the mission ends; so of the plans with as many
-    tasks others may cost less, and at times one with fewer. What is planned is finished by its deadline, whatever
-    the mask rule. Making the first one compiles the local search, some 20 seconds on a machine new to it.
+    The objective is the number of completed tasks because the paper's tables count it. Eq. 1 is a different objective:
+    a completed task costs nothing there and any other at least 1, so that one more completed task usually pays. But
+    the later the mission ends, the more an untaken task costs. So another plan with as many tasks may cost less, and
+    at times one with fewer. Every planned task is finished by its deadline, whatever the mask rule. The first instance
+    compiles the local search: some 20 seconds on a new machine.
 
     Args:
-        budget: seconds a scenario, > 0. Kept up to about a second, and the time of the local search.
-        max_states: how many states of the dynamic program to keep for a robot, >= 0. Four million need 200 MB and do
-            for some 18 tasks that can be done in any order, or for more with tight deadlines.
+        budget: seconds per scenario, > 0; None is `BUDGET`. It may be exceeded by about a second and by the time of
+            the local search.
+        max_states: number of states of the dynamic program to keep for each robot, >= 0. Four million need 200 MB and
+            suffice for some 18 tasks that can be done in any order, or for more with tight deadlines.
 
     Raises:
         ConfigError: if an argument is out of range.
     """
 
-    def __init__(self, budget: float = BUDGET, max_states: int = MAX_STATES) -> None:
-        if not 0 < budget < math.inf:
-            raise ConfigError(f"budget is {budget:g}; expected a number of seconds > 0")
+    def __init__(self, budget: float | None = None, max_states: int = MAX_STATES) -> None:
+        budget = BUDGET if budget is None else budget
+        check_budget(budget)
         if max_states < 0:
             raise ConfigError(f"max_states is {max_states}; expected a whole number >= 0")
         self._budget, self._max_states = budget, max_states
@@ -64,27 +63,26 @@ class ExactSolver:
 
     def solve(self, scenario: Scenario) -> Plan:
         """A plan for `scenario`, with its bound."""
-        begun = time.perf_counter()
-        bound = most_completable(scenario, BOUND_SHARE * self._budget)
+        limit = TimeLimit.of(self._budget)
+        bound = most_completable(scenario, limit.first(BOUND_SHARE))
         best = self._local_search.solve(scenario).routes
         completed = verify(scenario, Plan(best)).completed
-        # The sets that are part of no other nearly always do. They may not where rounding lets a robot be in time for a
-        # set but not for a part of it.
+        # The sets that are part of no other nearly always suffice. They may not where, by rounding, a robot is in time
+        # for a set but not for a part of it.
         for only_largest in (True, False):
             if completed == bound:
                 break
-            teams, all_found = self._teams(scenario, only_largest, begun)
-            left = begun + self._budget - time.perf_counter()
-            choice = choose_sets(teams, scenario.num_tasks, disjoint=not only_largest, seconds=left)
-            routes = on_time(scenario, [choice.routes.get(robot, []) for robot in range(scenario.num_robots)])
+            teams, all_found = self._teams(scenario, only_largest, limit)
+            selection = select_sets(teams, scenario.num_tasks, disjoint=not only_largest, limit=limit)
+            routes = on_time(scenario, [selection.routes.get(robot, []) for robot in range(scenario.num_robots)])
             best, completed = _best(scenario, [best, routes])
             if not all_found:
                 break
-            bound = min(bound, choice.bound)
+            bound = min(bound, selection.bound)
         return Plan(best, scenario.name, "exact", bound)
 
-    def _teams(self, scenario: Scenario, only_largest: bool, begun: float) -> tuple[list[Team], bool]:
-        """What each team of robots can choose from, and whether that is all."""
+    def _teams(self, scenario: Scenario, only_largest: bool, limit: TimeLimit) -> tuple[list[Team], bool]:
+        """What each team of robots can choose from, and whether that is everything."""
         alike: dict[tuple[float, ...], list[int]] = {}
         for robot in range(scenario.num_robots):
             x, y = scenario.robot_xy[robot].tolist()
@@ -93,8 +91,7 @@ class ExactSolver:
         for index, robots in enumerate(alike.values()):
             share = SEARCH_SHARE * (index + 1) / len(alike)
             found = task_sets(
-                scenario, robots[0],
-                only_largest=only_largest, max_states=self._max_states, stop_at=begun + share * self._budget,
+                scenario, robots[0], only_largest=only_largest, max_states=self._max_states, limit=limit.first(share)
             )  # fmt: skip
             all_found = all_found and found.all_found
             teams.append(Team(robots, found.routes))

@@ -1,20 +1,20 @@
 """All the sets of tasks that one robot can complete, each with the order that finishes it earliest.
 
 Dynamic programming over (set, last task), as Held and Karp did for the travelling salesman ("A dynamic programming
-approach to sequencing problems", 1962). Times are computed bit for bit as `rules` and the verifier do; as
-floating-point addition is monotone, who finishes a task no later than another can do so with all that follows, also
-where a deadline is met exactly. So the earliest finish is all that has to be kept.
+approach to sequencing problems", 1962). Times are the same to the bit as those of `rules` and the
+verifier. As floating-point addition is monotone, a robot that finishes a task no later than another finishes all that
+follows no later, even where a deadline is met exactly. So only the earliest finish has to be kept.
 """
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
+from mrta_zoo.policies.stop import TimeLimit
 from mrta_zoo.reach import BoolArray, first_finish
 from mrta_zoo.rules import travel_time, visit
 from mrta_zoo.scenario import FloatArray, Scenario
@@ -32,7 +32,7 @@ class TaskSets:
     """Sets of tasks that a robot can complete, as routes.
 
     Attributes:
-        routes: (S, L) tasks in the order that finishes the set earliest, filled up with -1; longest first.
+        routes: (S, L) tasks in the order that finishes the set earliest, padded with -1; the longest first.
         all_found: whether every set that the robot can complete is among them, or part of one of them.
     """
 
@@ -47,8 +47,8 @@ class _Layer:
     Attributes:
         tasks: (S,) the sets.
         last: (S,) the last task.
-        finish: (S,) when it is finished at the earliest.
-        before: (S,) the state in the layer of k - 1 tasks that it comes from.
+        finish: (S,) the earliest time at which that is finished.
+        before: (S,) the state in the layer of k - 1 tasks that each comes from.
     """
 
     tasks: IntArray
@@ -61,16 +61,16 @@ class _Layer:
 
 
 def task_sets(
-    scenario: Scenario, robot: int, *, only_largest: bool, max_states: int, stop_at: float = np.inf
+    scenario: Scenario, robot: int, *, only_largest: bool, max_states: int, limit: TimeLimit | None = None
 ) -> TaskSets:
-    """The sets of tasks that `robot` can complete if it has all to itself.
+    """The sets of tasks that `robot` can complete if it is alone.
 
     Args:
         scenario: the scenario.
         robot: which robot.
-        only_largest: leave out what is part of another set.
-        max_states: stop when there are more states than this, of 50 bytes each: then the sets found have few tasks.
-        stop_at: stop at this time, too, as `time.perf_counter` tells it.
+        only_largest: leave out the sets that are part of another.
+        max_states: stop at more states than this, of 50 bytes each; the sets found so far have few tasks.
+        limit: stop when the time is up, too.
     """
     reach = np.flatnonzero(within_reach(scenario, [robot])[0])
     if len(reach) > MOST_TASKS:
@@ -84,7 +84,7 @@ def task_sets(
     while layer is not None and len(layer):
         layers.append(layer)
         states += len(layer)
-        layer = _next(layer, travel, work, deadline, max_states - states, stop_at)
+        layer = _next(layer, travel, work, deadline, max_states - states, limit)
     routes = []
     for size in range(len(layers), 0, -1):
         chosen = _earliest_of_each(layers[size - 1].tasks, layers[size - 1].finish)
@@ -96,7 +96,7 @@ def task_sets(
 
 
 def within_reach(scenario: Scenario, robots: Sequence[int] | slice = slice(None)) -> BoolArray:
-    """(M, N) the tasks that each robot may be able to complete: those that it could do first, up to rounding."""
+    """(M, N) the tasks that each robot may be able to complete: those that it can finish first, up to rounding."""
     return first_finish(scenario, robots) <= scenario.deadline * (1 + ROUNDING)
 
 
@@ -107,12 +107,12 @@ def _first(finish: FloatArray, deadline: FloatArray) -> _Layer:
 
 
 def _next(
-    layer: _Layer, travel: FloatArray, work: FloatArray, deadline: FloatArray, room: int, stop_at: float
+    layer: _Layer, travel: FloatArray, work: FloatArray, deadline: FloatArray, room: int, limit: TimeLimit | None
 ) -> _Layer | None:
-    """The states with one task more; None if there is no time or room for them."""
+    """The states with one more task; None if there is no time or room for them."""
     grown: list[_Layer] = []
     for task in range(len(deadline)):
-        if time.perf_counter() > stop_at:
+        if limit is not None and limit.over:
             return None
         finish = visit(layer.finish, travel[layer.last, task], work[task]).finishes
         before = np.flatnonzero((finish <= deadline[task]) & (layer.tasks >> task & 1 == 0))
@@ -131,10 +131,10 @@ def _next(
 
 
 def _earliest_of_each(tasks: IntArray, finish: FloatArray) -> IntArray:
-    """For each of the sets `tasks`, in order, the first entry of those that finish earliest."""
+    """For each set in `tasks`, in order, the index of the first entry that finishes earliest."""
     if len(tasks) == 0:
         return np.empty(0, dtype=np.int64)
-    order = np.argsort(tasks, kind="stable")  # fast: they come in a few runs that are in order already
+    order = np.argsort(tasks, kind="stable")  # fast: a few runs that are sorted already
     finish = finish[order]
     new = np.diff(tasks[order], prepend=-1) != 0
     least = np.minimum.reduceat(finish, np.flatnonzero(new))
@@ -145,7 +145,7 @@ def _earliest_of_each(tasks: IntArray, finish: FloatArray) -> IntArray:
 
 
 def _part_of(smaller: IntArray, larger: IntArray, bits: int) -> npt.NDArray[np.bool_]:
-    """Which of the sets `smaller`, in order, are one of `larger` less a task."""
+    """Which of the sorted sets `smaller` are a set of `larger` without one of its tasks."""
     part = np.zeros(len(smaller), dtype=np.bool_)
     larger = np.unique(larger)
     for bit in range(bits):
@@ -156,7 +156,7 @@ def _part_of(smaller: IntArray, larger: IntArray, bits: int) -> npt.NDArray[np.b
 
 
 def _routes(layers: list[_Layer], chosen: IntArray, reach: IntArray, length: int) -> IntArray:
-    """(S, length) the tasks of the `chosen` states of the last layer, in order, filled up with -1."""
+    """(S, length) the tasks of the `chosen` states of the last layer, in order, padded with -1."""
     routes = np.full((len(chosen), length), -1, dtype=np.int64)
     for position in range(len(layers) - 1, -1, -1):
         routes[:, position] = reach[layers[position].last[chosen]]

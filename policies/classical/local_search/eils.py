@@ -35,7 +35,7 @@ from mrta_zoo.policies.classical.local_search.tours import (
     remove,
     tours_of,
 )
-from mrta_zoo.policies.interruption import interruptible, side_by_side
+from mrta_zoo.policies.interruption import interruptible, run_in_parallel
 from mrta_zoo.policies.stop import Cancellation, FirstOf, MaxIterations, StoppingCriterion, TimeLimit
 from mrta_zoo.scenario import FloatArray, Scenario
 from mrta_zoo.verify import verify
@@ -135,7 +135,7 @@ class EilsSolver:
             return worth(best), best
 
         searches = [partial(interruptible, partial(search, k), cancellation.cancel) for k in range(self._threads)]
-        best = max(side_by_side(searches, cancellation.cancel), key=itemgetter(0))[1]
+        best = max(run_in_parallel(searches, cancellation.cancel), key=itemgetter(0))[1]
         if verify(scenario, plan).completed > best.size.sum():  # dropping a late visit made another late by rounding
             return Plan(plan.routes, scenario.name, method)
         return plan_of(best, scenario, method)

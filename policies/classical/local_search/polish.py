@@ -2,93 +2,84 @@
 
 from __future__ import annotations
 
-import time
 from functools import partial
-from threading import Event
 
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.classical.local_search.eils import EilsSolver
-from mrta_zoo.policies.interruption import side_by_side
-from mrta_zoo.policies.protocol import Hurried, NeedsWarmUp, Solver
+from mrta_zoo.policies.interruption import run_in_parallel
+from mrta_zoo.policies.protocol import Solver, SupportsTimeLimit, SupportsWarmUp
+from mrta_zoo.policies.stop import Cancellation, FirstOf, TimeLimit
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
 
-LEAST_BUDGET = 1e-3
-"""Seconds that are left for the search where the method has taken them all."""
 METHOD_SHARE = 0.2
-"""Of the budget, what the method may take if it can be hurried."""
+"""Share of the budget that a method with a time limit may take."""
 
 
 class PolishedSolver:
-    """Improves what a method has planned, by EILS-style search: as many tasks or more, and none late.
+    """Improves the plan of a method by EILS-style search. At least as many tasks are completed, and none is late.
 
-    With a budget, the search has what the method leaves. A method that can be hurried, as trained policies can, has at
-    most `METHOD_SHARE` of it; if it is known to need more, or turns out to, the search begins without its plan. With
-    more than one thread the others search from the beginning, while the method plans in the first.
+    With a budget, the search has the time that the method leaves. A method that supports a time limit, as trained
+    policies do, has at most `METHOD_SHARE` of the budget; if it needs more, or is known to, the search begins without
+    its plan. With more than one thread, the others search from the beginning while the method plans in the first.
 
     Args:
         solver: the method.
         seed: of the search, >= 0.
-        budget: seconds a scenario for the method and the search together, > 0. By default the search ends by itself,
-            see `eils.EilsConfig`, and the plan depends neither on the machine nor on the threads.
-        threads: how many searches go on at a time, if there is a budget.
+        budget: seconds per scenario for the method and the search together, > 0. By default the search ends by itself
+            (see `eils.EilsConfig`), and the plan depends neither on the machine nor on the threads.
+        threads: number of parallel searches, if there is a budget.
     """
 
     def __init__(self, solver: Solver, seed: int = 0, budget: float | None = None, threads: int = 1) -> None:
-        self._solver, self._seed, self._budget, self._threads = solver, seed, budget, threads
-        self._pace = 0.0  # seconds that the method has needed for a task, as far as is known
-        EilsSolver()  # compiles the search, so that no plan has to wait for it
+        self._solver, self._budget = solver, budget
+        self._search, self._others = EilsSolver(seed), None
+        if budget is not None and threads > 1:
+            self._search, self._others = EilsSolver(seed + 1), EilsSolver(seed, budget, threads=threads - 1)
+        self._pace = 0.0  # seconds that the method needs for each task, as far as is known
 
     def solve(self, scenario: Scenario) -> Plan:
-        """A plan for `scenario`, signed with the method's name and "+polish"."""
+        """A plan for `scenario`; its method is the method's name and "+polish"."""
         if self._budget is None:
             plan = self._solver.solve(scenario)
-            return EilsSolver(self._seed).improve(scenario, plan, _signed(plan))
-        if self._threads == 1:
-            return self._plan_and_search(scenario, self._budget, self._seed)
-        others = EilsSolver(self._seed, self._budget, threads=self._threads - 1)
-        stop = Event()
-        plan, other = side_by_side(
-            [
-                partial(self._plan_and_search, scenario, self._budget, self._seed + 1, stop),
-                partial(others.solve, scenario, stop),
-            ],
-            stop.set,
-        )
+            return self._search.improve(scenario, plan, _polished(plan))
+        limit, cancellation = TimeLimit.of(self._budget), Cancellation()
+        first = partial(self._plan_and_search, scenario, limit, cancellation)
+        if self._others is None:
+            return first()
+        others = partial(self._others.solve, scenario, FirstOf((limit, cancellation)))
+        plan, other = run_in_parallel([first, others], cancellation.cancel)
         mine, theirs = (verify(scenario, each) for each in (plan, other))
         if (theirs.completed, -theirs.cost) > (mine.completed, -mine.cost):
             return Plan(other.routes, scenario.name, plan.method)
         return plan
 
-    def _plan_and_search(self, scenario: Scenario, budget: float, seed: int, stop: Event | None = None) -> Plan:
-        begun = time.perf_counter()
-        plan: Plan | None
-        if not isinstance(self._solver, Hurried):
-            plan = self._solver.solve(scenario)
-        else:
-            allowed = METHOD_SHARE * budget
-            plan = None
-            if self._pace * scenario.num_tasks < allowed:
-                plan = self._solver.solve_within(scenario, allowed)
-                self._learn(scenario, time.perf_counter() - begun, plan)
-            if plan is None:
-                plan = Plan(((),) * scenario.num_robots, method=self._solver.name)
-        left = max(LEAST_BUDGET, budget - (time.perf_counter() - begun))
-        return EilsSolver(seed, left).improve(scenario, plan, _signed(plan), stop)
+    def _plan_and_search(self, scenario: Scenario, limit: TimeLimit, cancellation: Cancellation) -> Plan:
+        plan = self._plan(scenario, limit)
+        return self._search.improve(scenario, plan, _polished(plan), FirstOf((limit.rest(), cancellation)))
 
-    def _learn(self, scenario: Scenario, seconds: float, plan: Plan | None) -> None:
-        """Remember how long the method takes; twice as long as this, as a guess, where it did not finish."""
-        self._pace = (1 if plan else 2) * seconds / scenario.num_tasks
+    def _plan(self, scenario: Scenario, limit: TimeLimit) -> Plan:
+        """The method's plan, or an empty one if there is no time for it."""
+        if not isinstance(self._solver, SupportsTimeLimit):
+            return self._solver.solve(scenario)
+        plan, allowed = None, limit.first(METHOD_SHARE)
+        if self._pace * scenario.num_tasks < allowed.end - allowed.begin:
+            plan = self._time(self._solver, scenario, allowed)
+        return Plan(((),) * scenario.num_robots, method=self._solver.name) if plan is None else plan
+
+    def _time(self, solver: SupportsTimeLimit, scenario: Scenario, limit: TimeLimit) -> Plan | None:
+        """The method's plan, if it is in time. Its pace is noted; where it is not finished, twice that, as a guess."""
+        plan = solver.solve_within(scenario, limit)
+        self._pace = (2 if plan is None else 1) * limit.spent() / scenario.num_tasks
+        return plan
 
     def warm_up(self, scenario: Scenario) -> None:
-        """Let the method do whatever happens only once, and see how long it takes then."""
-        if isinstance(self._solver, NeedsWarmUp):
+        """Warm up the method, then see how long it takes."""
+        if isinstance(self._solver, SupportsWarmUp):
             self._solver.warm_up(scenario)
-        if isinstance(self._solver, Hurried) and self._budget is not None:
-            begun = time.perf_counter()
-            plan = self._solver.solve_within(scenario, self._budget)
-            self._learn(scenario, time.perf_counter() - begun, plan)
+        if isinstance(self._solver, SupportsTimeLimit) and self._budget is not None:
+            self._time(self._solver, scenario, TimeLimit.of(self._budget))
 
 
-def _signed(plan: Plan) -> str:
+def _polished(plan: Plan) -> str:
     return f"{plan.method}+polish"

@@ -18,9 +18,10 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator, UniformGenerator
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.classical.exact.relaxation import most_completable
-from mrta_zoo.policies.classical.exact.set_choice import Team, choose_sets
+from mrta_zoo.policies.classical.exact.selection import Team, select_sets
 from mrta_zoo.policies.classical.exact.solver import ExactSolver
 from mrta_zoo.policies.registry import METHODS, make_solver, method_names
+from mrta_zoo.policies.stop import TimeLimit
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
 
@@ -125,15 +126,18 @@ def test_a_part_of_a_set_may_be_late_by_rounding() -> None:
 def test_choice_of_sets() -> None:
     # Robots 0 and 2 are alike: {0, 1} or {2}; robot 1: {1, 2} or {3}.
     pairs, others = np.array([[0, 1], [2, -1]]), np.array([[1, 2], [3, -1]])
-    choice = choose_sets([Team([0, 2], pairs), Team([1], others)], 4, disjoint=True, seconds=5.0)
-    assert (choice.routes, choice.bound) == ({0: [0, 1], 2: [2], 1: [3]}, 4)
+    selection = select_sets([Team([0, 2], pairs), Team([1], others)], 4, disjoint=True, limit=TimeLimit.of(5.0))
+    assert (selection.routes, selection.bound) == ({0: [0, 1], 2: [2], 1: [3]}, 4)
     # Robot 0 has {0, 1}, robot 1 {1, 2}: three tasks, but not apart.
     teams = [Team([0], pairs[:1]), Team([1], others[:1])]
-    assert choose_sets(teams, 4, disjoint=False, seconds=5.0).bound == 3
-    assert choose_sets(teams, 4, disjoint=True, seconds=5.0).bound == 2
+    assert select_sets(teams, 4, disjoint=False, limit=TimeLimit.of(5.0)).bound == 3
+    assert select_sets(teams, 4, disjoint=True, limit=TimeLimit.of(5.0)).bound == 2
     # Nothing to choose from, and no time.
-    assert choose_sets([Team([0], np.empty((0, 1), dtype=np.int64))], 4, disjoint=False, seconds=5.0).bound == 0
-    assert choose_sets(teams, 4, disjoint=True, seconds=0.0).bound == 4
+    assert (
+        select_sets([Team([0], np.empty((0, 1), dtype=np.int64))], 4, disjoint=False, limit=TimeLimit.of(5.0)).bound
+        == 0
+    )
+    assert select_sets(teams, 4, disjoint=True, limit=TimeLimit.of(0.0)).bound == 4
 
 
 @pytest.mark.parametrize("cut", [{"budget": 1e-9}, {"max_states": 0}, {"max_states": 6}])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from threading import Event
 from types import SimpleNamespace
 
 import numpy as np
@@ -11,8 +10,9 @@ from factories import small_scenario
 
 from mrta_zoo import Plan, Scenario
 from mrta_zoo.generators import TaptcGenerator
-from mrta_zoo.policies.protocol import Hurried
+from mrta_zoo.policies.protocol import SupportsTimeLimit
 from mrta_zoo.policies.registry import make_solver
+from mrta_zoo.policies.stop import FirstOf, MaxIterations, StoppingCriterion, TimeLimit
 from mrta_zoo.verify import verify
 
 pytest.importorskip("numba")
@@ -25,7 +25,7 @@ from mrta_zoo.policies.classical.local_search.tours import tours_of
 
 
 class Slow:
-    """A method that needs a given number of seconds, by a clock of its own, and can be hurried."""
+    """A method that needs a given number of seconds, by a clock of its own, and supports a time limit."""
 
     name = "slow"
 
@@ -40,37 +40,34 @@ class Slow:
         self.now += self.seconds
         return make_solver("edf").solve(scenario)
 
-    def solve_within(self, scenario: Scenario, seconds: float) -> Plan | None:
-        self.allowed.append(seconds)
-        if self.seconds > seconds:
-            self.now += seconds
+    def solve_within(self, scenario: Scenario, limit: TimeLimit) -> Plan | None:
+        self.allowed.append(limit.left())
+        if self.seconds > limit.left():
+            self.now += limit.left()
             return None
         return Plan(self.solve(scenario).routes, scenario.name, self.name)
 
 
-def spied(monkeypatch: pytest.MonkeyPatch, slow: Slow) -> list[tuple[float | None, int]]:
-    """Budget of each search from now on, and how many visits it begins with."""
-    found: list[tuple[float | None, int]] = []
+def spied(monkeypatch: pytest.MonkeyPatch, slow: Slow) -> list[tuple[float, int]]:
+    """Seconds that each search has from now on, and the number of visits it begins with."""
+    found: list[tuple[float, int]] = []
 
     class Spy(EilsSolver):
-        def __init__(self, seed: int = 0, budget: float | None = None, threads: int = 1) -> None:
-            super().__init__(seed, None)
-            self._asked = budget
-
-        def improve(self, scenario: Scenario, plan: Plan, method: str, stop: Event | None = None) -> Plan:
-            found.append((self._asked, sum(map(len, plan.routes))))
-            return super().improve(scenario, plan, method, stop)
+        def improve(self, scenario: Scenario, plan: Plan, method: str, stop: StoppingCriterion | None = None) -> Plan:
+            assert isinstance(stop, FirstOf)
+            limit = stop.criteria[0]
+            assert isinstance(limit, TimeLimit)
+            found.append((limit.end - limit.begin, sum(map(len, plan.routes))))
+            return super().improve(scenario, plan, method, MaxIterations(1))
 
     monkeypatch.setattr("mrta_zoo.policies.classical.local_search.polish.EilsSolver", Spy)
-    monkeypatch.setattr(
-        "mrta_zoo.policies.classical.local_search.polish.time", SimpleNamespace(perf_counter=slow.clock)
-    )
+    monkeypatch.setattr("mrta_zoo.policies.stop.time", SimpleNamespace(perf_counter=slow.clock))
     return found
 
 
 def test_a_method_in_time_gives_the_search_its_plan_and_what_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
     slow, scenario = Slow(0.25), small_scenario()
-    assert isinstance(slow, Hurried)
+    assert isinstance(slow, SupportsTimeLimit)
     searches = spied(monkeypatch, slow)
     plan = PolishedSolver(slow, 0, 2.0).solve(scenario)
     assert plan.method == "slow+polish"
@@ -137,3 +134,15 @@ def test_other_threads_search_while_the_method_plans(monkeypatch: pytest.MonkeyP
     assert plan.method == "slow+polish"
     visits = sum(map(len, make_solver("edf").solve(scenario).routes))
     assert sorted(searches) == [(1.75, visits), (2.0, 0)]
+
+
+@pytest.mark.parametrize(("seconds", "left"), [(0.25, 1.75), (3.0, -1.0)])
+def test_a_method_that_knows_no_time_limit_is_waited_for(
+    seconds: float, left: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    slow, scenario = Slow(seconds), small_scenario()
+    searches = spied(monkeypatch, slow)
+    plan = PolishedSolver(SimpleNamespace(solve=slow.solve), 0, 2.0).solve(scenario)  # type: ignore[arg-type]
+    assert plan.method == "edf+polish"
+    assert searches == [(left, sum(map(len, make_solver("edf").solve(scenario).routes)))]
+    assert slow.allowed == []

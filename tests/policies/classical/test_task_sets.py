@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from itertools import permutations
 
 import numpy as np
@@ -12,6 +11,7 @@ from strategies import seeded_scenarios
 
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.classical.exact.task_sets import TaskSets, task_sets
+from mrta_zoo.policies.stop import TimeLimit
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
 
@@ -83,7 +83,7 @@ def test_cut_off_by_states_and_by_the_clock() -> None:
     # 10 + 10 · 9 + C(10, 3) · 3 = 10 + 90 + 360 = 460 states have up to 3 tasks.
     some = task_sets(everything_feasible(10), 0, only_largest=True, max_states=460)
     assert (some.routes.shape, some.all_found) == ((120, 3), False)
-    none = task_sets(everything_feasible(10), 0, only_largest=True, max_states=5120, stop_at=time.perf_counter())
+    none = task_sets(everything_feasible(10), 0, only_largest=True, max_states=5120, limit=TimeLimit.of(0.0))
     assert (none.routes.shape, none.all_found) == ((10, 1), False)
     assert not task_sets(everything_feasible(64), 0, only_largest=True, max_states=5120).all_found
     assert task_sets(everything_feasible(63), 0, only_largest=True, max_states=5000).routes.shape[1] == 2
