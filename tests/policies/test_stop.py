@@ -80,5 +80,5 @@ def test_the_first_of_several_ends_the_search(clock: Clock) -> None:
 
 @pytest.mark.parametrize("budget", [0.0, -1.0, math.inf, math.nan])
 def test_budgets(budget: float) -> None:
-    with pytest.raises(ConfigError, match="budget is .*; expected a number of seconds > 0"):
+    with pytest.raises(ConfigError, match=r"budget is .*; expected a number of seconds > 0"):
         check_budget(budget)
