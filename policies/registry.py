@@ -104,15 +104,7 @@ class LearnedSolver:
 
         None if not even the first greedy mission is finished in time.
         """
-        options = self.options
-        return self.policy.solve_within(
-            scenario,
-            limit.left(),
-            decode=options.decode or "greedy",
-            samples=options.samples,
-            mask_rule=options.mask_rule,
-            seed=options.seed,
-        )
+        return self.policy.solve_within(scenario, limit, self.options)
 
     def warm_up(self, scenario: Scenario) -> None:
         """Plan once without a search: the first pass of a network is slower than those that follow."""

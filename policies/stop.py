@@ -62,6 +62,10 @@ class NoImprovement:
         return max(1.0, self.count * (1.0 - progress))
 
 
+class OutOfTimeError(Exception):
+    """The time is up before there is a plan."""
+
+
 @dataclass(frozen=True, slots=True)
 class TimeLimit:
     """Ends at a moment. Both moments are by `time.perf_counter`.
@@ -100,6 +104,11 @@ class TimeLimit:
     def over(self) -> bool:
         """Whether the time is up."""
         return time.perf_counter() >= self.end
+
+    def check(self) -> None:
+        """Raise OutOfTimeError if the time is up."""
+        if self.over:
+            raise OutOfTimeError
 
     def progress(self, done: int, idle: int = 0) -> float:
         now = time.perf_counter()

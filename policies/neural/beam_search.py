@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 
 import torch
@@ -11,6 +10,7 @@ from mrta_zoo.batch import BatchMission
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.neural.capam.inputs import Tasks, Watch
 from mrta_zoo.policies.neural.rollout import NOT_FINITE, Scorer
+from mrta_zoo.policies.stop import TimeLimit
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario_batch import ScenarioBatch
 
@@ -22,7 +22,7 @@ def beam_search(
     width: int,
     *,
     mask_rule: MaskRule = "feasible",
-    until: float = float("inf"),
+    limit: TimeLimit | None = None,
 ) -> Iterator[BatchMission]:
     """Missions as they are finished, in batches.
 
@@ -38,7 +38,7 @@ def beam_search(
         scenario: one scenario.
         width: how many missions are unfinished at a time, >= 1; with 1 the only mission is the greedy one.
         mask_rule: what robots may choose.
-        until: by `time.perf_counter`, when to stop, whatever is unfinished then.
+        limit: when to stop, whatever is unfinished then; None never does.
 
     Raises:
         ConfigError: if the network gives probabilities that are not finite.
@@ -51,7 +51,7 @@ def beam_search(
             yield mission.select(mission.done.nonzero().squeeze(1))
             unfinished = (~mission.done).nonzero().squeeze(1)
             mission, log_prob = mission.select(unfinished), log_prob[unfinished]
-        if len(log_prob) == 0 or time.perf_counter() >= until:
+        if len(log_prob) == 0 or (limit is not None and limit.over):
             return
         states = Watch(mission, len(log_prob)).states()
         step = network(encoding, states, network.features(encoding, states))[0]

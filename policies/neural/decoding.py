@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -12,9 +11,10 @@ import torch
 from mrta_zoo.batch import BatchMission
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.neural.beam_search import beam_search
-from mrta_zoo.policies.neural.rollout import OutOfTimeError, Rollout, Scorer, roll_out
+from mrta_zoo.policies.neural.rollout import Rollout, Scorer, roll_out
 from mrta_zoo.policies.neural.symmetry import SYMMETRIES, SymmetricNetwork
 from mrta_zoo.policies.options import DEFAULT_SAMPLES, MAX_SAMPLES, Decode
+from mrta_zoo.policies.stop import OutOfTimeError, TimeLimit
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.scenario_batch import ScenarioBatch
@@ -30,16 +30,16 @@ class Decoding:
     Attributes:
         decode: see `options.Decode`.
         samples: missions drawn in one go, or the width of the beam; None is `DEFAULT_SAMPLES`.
-        until: by `time.perf_counter`, when to stop searching; None does what can be done in one go.
-        hurried: whether to give up then even if there is no plan yet; otherwise the greedy mission is finished.
+        limit: when to stop searching; None makes one pass.
+        must_plan: whether to finish the greedy mission even if that takes longer; otherwise there may be no plan.
         mask_rule: what robots may choose.
         seed: of the draws.
     """
 
     decode: Decode = "greedy"
     samples: int | None = None
-    until: float | None = None
-    hurried: bool = False
+    limit: TimeLimit | None = None
+    must_plan: bool = True
     mask_rule: MaskRule = "feasible"
     seed: int = 0
 
@@ -51,12 +51,12 @@ def best_plan(network: Scorer, scenario: Scenario, how: Decoding) -> Plan:
 
     Raises:
         ConfigError: if the network gives probabilities that are not finite.
-        OutOfTimeError: if `how` is hurried and there is no plan in time.
+        OutOfTimeError: if the time is up before there is a plan, unless `how.must_plan`.
     """
     batch, best = ScenarioBatch.of([scenario], mask_rule=how.mask_rule), _Best()
-    if not (how.decode == "augment" and how.until is None):  # whose first mission is the greedy one
-        until = how.until if how.hurried else None
-        best.offer(roll_out(network, batch, mask_rule=how.mask_rule, keep_plans=True, until=until))
+    if not (how.decode == "augment" and how.limit is None):  # whose first mission is the greedy one
+        limit = None if how.must_plan else how.limit
+        best.offer(roll_out(network, batch, mask_rule=how.mask_rule, keep_plans=True, limit=limit))
     samples = how.samples or DEFAULT_SAMPLES.get(how.decode, 1)
     try:
         if how.decode == "sample":
@@ -64,8 +64,8 @@ def best_plan(network: Scorer, scenario: Scenario, how: Decoding) -> Plan:
         elif how.decode == "augment":
             eight = batch.repeat(SYMMETRIES)
             symmetric = SymmetricNetwork(network, eight)
-            best.offer(roll_out(symmetric, eight, mask_rule=how.mask_rule, keep_plans=True, until=how.until))
-            if how.until is not None:
+            best.offer(roll_out(symmetric, eight, mask_rule=how.mask_rule, keep_plans=True, limit=how.limit))
+            if how.limit is not None:
                 _sample(symmetric, eight, math.ceil(samples / SYMMETRIES), how, best)
         elif how.decode == "beam":
             _beams(network, batch, samples, how, best)
@@ -86,31 +86,27 @@ def _sample(network: Scorer, batch: ScenarioBatch, samples: int, how: Decoding, 
         best.offer(
             roll_out(
                 network, batch, samples=count, generator=generator, mask_rule=how.mask_rule, keep_plans=True,
-                until=how.until,
+                limit=how.limit,
             )
         )  # fmt: skip
 
-    if how.until is None:
+    if how.limit is None:
         draw(samples)
         return
     draws = min(samples, max(1, FIRST_SAMPLES // len(batch)))
-    while draws > 0:
-        begun = time.perf_counter()
-        if begun >= how.until:
-            break
+    while draws > 0 and (before := how.limit.left()) > 0:
         draw(draws)
-        now = time.perf_counter()
-        draws = min(samples, int(draws * (how.until - now) / (now - begun)))
+        left = how.limit.left()
+        draws = min(samples, int(draws * left / (before - left)))
 
 
 def _beams(network: Scorer, batch: ScenarioBatch, width: int, how: Decoding, best: _Best) -> None:
     """A beam of that width; with a budget, then one of twice the width, and so on until the time is up."""
-    until = math.inf if how.until is None else how.until
     while True:
-        for missions in beam_search(network, batch, width, mask_rule=how.mask_rule, until=until):
+        for missions in beam_search(network, batch, width, mask_rule=how.mask_rule, limit=how.limit):
             best.offer_missions(missions)
         width *= 2
-        if how.until is None or time.perf_counter() >= until or width > MAX_SAMPLES:
+        if how.limit is None or how.limit.over or width > MAX_SAMPLES:
             return
 
 

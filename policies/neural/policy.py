@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import os
 import re
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -25,11 +24,12 @@ from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.decoding import Decoding, best_plan
 from mrta_zoo.policies.neural.policy_files import SUFFIX, weights_file
-from mrta_zoo.policies.neural.rollout import NOT_FINITE, OutOfTimeError, roll_out
+from mrta_zoo.policies.neural.rollout import NOT_FINITE, roll_out
 from mrta_zoo.policies.neural.sharing import IndependentNetworks, Network
 from mrta_zoo.policies.neural.weights import PolicyInfo, load_weights
 from mrta_zoo.policies.options import Decode, SolverOptions
 from mrta_zoo.policies.pretrained import pretrained_names, pretrained_path
+from mrta_zoo.policies.stop import OutOfTimeError, TimeLimit
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.scenario_batch import ScenarioBatch
@@ -181,45 +181,35 @@ class NeuralPolicy:
         Raises:
             ConfigError: if an option is out of range.
         """
-        return self._plan(scenario, decode, samples, budget, mask_rule, seed, hurried=False)
+        options = SolverOptions(decode=decode, samples=samples, budget=budget, mask_rule=mask_rule, seed=seed)
+        limit = None if budget is None else TimeLimit.of(budget)
+        return self._plan(scenario, self._decoding(options, limit, must_plan=True))
 
-    def solve_within(
-        self,
-        scenario: Scenario,
-        seconds: float,
-        *,
-        decode: Decode = "greedy",
-        samples: int | None = None,
-        mask_rule: MaskRule | None = None,
-        seed: int = 0,
-    ) -> Plan | None:
-        """As `solve` with a budget of `seconds`, but None if not even the greedy mission is finished in time."""
+    def solve_within(self, scenario: Scenario, limit: TimeLimit, options: SolverOptions | None = None) -> Plan | None:
+        """As `solve`, but None if not even the greedy mission is finished in time.
+
+        Args:
+            scenario: what to plan.
+            limit: counts instead of the budget of `options`.
+            options: how to plan; by default greedily.
+        """
         try:
-            return self._plan(scenario, decode, samples, seconds, mask_rule, seed, hurried=True)
+            return self._plan(scenario, self._decoding(options or SolverOptions(), limit, must_plan=False))
         except OutOfTimeError:
             return None
 
-    @few_threads()
-    def _plan(
-        self,
-        scenario: Scenario,
-        decode: Decode,
-        samples: int | None,
-        budget: float | None,
-        mask_rule: MaskRule | None,
-        seed: int,
-        hurried: bool,
-    ) -> Plan:
-        begun = time.perf_counter()
-        SolverOptions(decode=decode, samples=samples, budget=budget, mask_rule=mask_rule, seed=seed)  # checks them
-        how = Decoding(
-            decode=decode,
-            samples=samples,
-            until=None if budget is None else begun + budget,
-            hurried=hurried,
-            mask_rule=mask_rule or self.info.mask_rule,
-            seed=seed,
+    def _decoding(self, options: SolverOptions, limit: TimeLimit | None, must_plan: bool) -> Decoding:
+        return Decoding(
+            decode=options.decode or "greedy",
+            samples=options.samples,
+            limit=limit,
+            must_plan=must_plan,
+            mask_rule=options.mask_rule or self.info.mask_rule,
+            seed=options.seed,
         )
+
+    @few_threads()
+    def _plan(self, scenario: Scenario, how: Decoding) -> Plan:
         return Plan(best_plan(self.network, scenario, how).routes, scenario.name, self.name)
 
     @few_threads()

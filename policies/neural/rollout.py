@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
@@ -17,6 +15,7 @@ from mrta_zoo.plan import Plan
 from mrta_zoo.policies.neural.capam.candidates import Candidates
 from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks, Watch
 from mrta_zoo.policies.neural.tensor_tree import select, tree_map
+from mrta_zoo.policies.stop import TimeLimit
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario_batch import ScenarioBatch
 
@@ -27,10 +26,6 @@ NOT_FINITE = (
     "the network gives probabilities that are not finite: its weights are spoilt (did training diverge?), a feature or "
     "encoder of your own gives such numbers, or the scenario is beyond what float32 can hold"
 )
-
-
-class OutOfTimeError(Exception):
-    """The time was up before the missions were over."""
 
 
 class Scorer(Protocol):
@@ -112,7 +107,7 @@ def roll_out(
     mask_rule: MaskRule = "feasible",
     keep_plans: bool = False,
     keep_segments: bool = False,
-    until: float | None = None,
+    limit: TimeLimit | None = None,
 ) -> Rollout:
     """Let `network` decide for all robots of all missions.
 
@@ -124,15 +119,15 @@ def roll_out(
         mask_rule: what robots may choose.
         keep_plans: whether to return the plans.
         keep_segments: whether to return every decision, for learning.
-        until: by `time.perf_counter`, when to give up; None never does.
+        limit: when to give up; None never does.
 
     Raises:
         ConfigError: if the network gives probabilities that are not finite.
-        OutOfTimeError: if there is not time enough.
+        OutOfTimeError: if the time is up before all missions are over.
     """
     # Inference mode is quicker, but what it makes can't take part in learning.
     with torch.no_grad() if keep_segments else torch.inference_mode():
-        return _roll_out(network, scenarios, samples, generator, mask_rule, keep_plans, keep_segments, until)
+        return _roll_out(network, scenarios, samples, generator, mask_rule, keep_plans, keep_segments, limit)
 
 
 def _roll_out(
@@ -143,7 +138,7 @@ def _roll_out(
     mask_rule: MaskRule,
     keep_plans: bool,
     keep_segments: bool,
-    until: float | None,
+    limit: TimeLimit | None,
 ) -> Rollout:
     encoding = network.encode(Tasks.of_batch(scenarios))
     mission = BatchMission(scenarios.repeat(samples), mask_rule)
@@ -172,7 +167,7 @@ def _roll_out(
             encoding = select(encoding, keep)
         log_prob = _run_segment(
             network, encoding, mission, samples, generator, under_way, out.segments if keep_segments else None,
-            math.inf if until is None else until,
+            limit,
         )  # fmt: skip
         # NaN would not only spoil the outcome: a mission that never takes a legal task would never end.
         if not torch.isfinite(log_prob).all():
@@ -190,7 +185,7 @@ def _run_segment(
     generator: torch.Generator | None,
     under_way: Tensor,
     segments: list[Segment] | None,
-    until: float = math.inf,
+    limit: TimeLimit | None,
 ) -> Tensor:
     """Let the network take the next `SEGMENT` decisions of each mission.
 
@@ -202,7 +197,7 @@ def _run_segment(
         generator: of the draws; None takes the likeliest.
         under_way: (S,) int64 what `Segment.scenarios` is to be.
         segments: where the decisions go, or None.
-        until: time by the clock of `time.perf_counter` after which no decision begins.
+        limit: after it no decision begins.
 
     Raises:
         OutOfTimeError: if the time is up.
@@ -215,8 +210,8 @@ def _run_segment(
     log_prob = torch.zeros(len(mission.actor), device=mission.actor.device)
     watch = Watch(mission, samples)
     for _ in range(SEGMENT):
-        if until < math.inf and time.perf_counter() >= until:
-            raise OutOfTimeError
+        if limit is not None:
+            limit.check()
         states = watch.states()
         features = network.features(encoding, states)
         log_probs = network(encoding, states, features).flatten(0, 1)

@@ -13,8 +13,8 @@ import torch
 from mrta_zoo import Scenario, mrta_v0
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import UniformGenerator
-from mrta_zoo.policies.neural import decoding, rollout
-from mrta_zoo.policies.neural import policy as neural
+from mrta_zoo.policies import stop
+from mrta_zoo.policies.neural import decoding
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.capam.inputs import Tasks
 from mrta_zoo.policies.neural.capam.neighbourhood import Neighbourhood
@@ -137,8 +137,7 @@ def test_a_budget_is_kept(monkeypatch: pytest.MonkeyPatch, pace: float, budget: 
         return roll_out(*arguments, samples=samples, **options)
 
     monkeypatch.setattr(decoding, "roll_out", timed_roll_out)
-    for module in (neural, decoding, rollout):
-        monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=lambda: now))
+    monkeypatch.setattr(stop, "time", SimpleNamespace(perf_counter=lambda: now))
     scenario = UniformGenerator(tasks=(8, 8), robots=(2, 2))(np.random.default_rng(0))
     policy = NeuralPolicy(build_network(SMALL, "shared", 1, seed=0), PolicyInfo(network=SMALL))
     policy.solve(scenario, decode="sample", budget=budget)

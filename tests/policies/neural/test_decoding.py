@@ -15,18 +15,18 @@ from mrta_zoo import Scenario
 from mrta_zoo.batch import BatchMission
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator, UniformGenerator
-from mrta_zoo.policies.neural import beam_search as beam_search_module
-from mrta_zoo.policies.neural import decoding, rollout
-from mrta_zoo.policies.neural import policy as neural
+from mrta_zoo.policies import stop
+from mrta_zoo.policies.neural.beam_search import beam_search
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.decoding import Decoding, best_plan
 from mrta_zoo.policies.neural.policy import NeuralPolicy
-from mrta_zoo.policies.neural.rollout import OutOfTimeError, roll_out
+from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import build_network
 from mrta_zoo.policies.neural.symmetry import SYMMETRIES, SymmetricNetwork, View
 from mrta_zoo.policies.neural.weights import PolicyInfo
 from mrta_zoo.policies.options import Decode
+from mrta_zoo.policies.stop import OutOfTimeError, TimeLimit
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.verify import verify
@@ -110,7 +110,7 @@ def test_the_likeliest_missions_go_on() -> None:
         (3, ["012", "102", "021"]),
         (6, ["012", "102", "021", "201", "120", "210"]),
     ):
-        (missions,) = beam_search_module.beam_search(Fixed([0.5, 0.3, 0.2]), batch, width)
+        (missions,) = beam_search(Fixed([0.5, 0.3, 0.2]), batch, width)
         assert ["".join(map(str, plan.routes[0])) for plan in missions.plans()] == expected
 
 
@@ -119,7 +119,7 @@ def test_a_beam_of_width_one_is_greedy(rule: MaskRule) -> None:
     network = policy().network
     for scenario in draw(6, seed=1):
         batch = ScenarioBatch.of([scenario])
-        (mission,) = beam_search_module.beam_search(network, batch, 1, mask_rule=rule)
+        (mission,) = beam_search(network, batch, 1, mask_rule=rule)
         greedy = roll_out(network, batch, mask_rule=rule, keep_plans=True)
         assert mission.plans() == greedy.plans
 
@@ -129,7 +129,7 @@ def test_no_two_missions_of_a_beam_are_the_same() -> None:
         task_xy=[[10, 0], [20, 0], [0, 10], [0, 20]], deadline=[90] * 4, workload=[1] * 4,
         robot_xy=[[0, 0], [0, 0]], capacity=[1, 1],
     )  # fmt: skip
-    found = beam_search_module.beam_search(Fixed([0.25] * 4), ScenarioBatch.of([twins]), 50)
+    found = beam_search(Fixed([0.25] * 4), ScenarioBatch.of([twins]), 50)
     plans = [plan for missions in found for plan in missions.plans()]
     assert len(plans) == len(set(plans)) > 10
 
@@ -235,20 +235,19 @@ def test_budgets_are_kept(decode: Decode, monkeypatch: pytest.MonkeyPatch) -> No
     scenario, own = draw(1)[0], policy()
     for budget in (1.0, 20.0, 100.0):
         clock = Clock()
-        for module in (neural, decoding, rollout, beam_search_module):
-            monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=clock))
+        monkeypatch.setattr(stop, "time", SimpleNamespace(perf_counter=clock))
         plan = own.solve(scenario, decode=decode, budget=budget)
         assert budget <= clock.now <= budget + 2  # it goes on until the end, and stops there
         assert verify(scenario, plan).completed >= verify(scenario, own.solve(scenario)).completed
 
 
-def test_without_time_there_is_no_plan_for_those_in_a_hurry() -> None:
+def test_without_time_there_is_no_plan_unless_there_must_be() -> None:
     scenario, own = draw(1)[0], policy()
-    assert own.solve_within(scenario, 1e-9) is None
-    assert own.solve_within(scenario, 600.0) == own.solve(scenario)
+    assert own.solve_within(scenario, TimeLimit.of(1e-9)) is None
+    assert own.solve_within(scenario, TimeLimit.of(600.0)) == own.solve(scenario)
     assert own.solve(scenario, budget=1e-9) == own.solve(scenario)
     with pytest.raises(OutOfTimeError):
-        roll_out(own.network, ScenarioBatch.of([scenario]), until=0.0)
+        roll_out(own.network, ScenarioBatch.of([scenario]), limit=TimeLimit.of(0.0))
 
 
 @pytest.mark.parametrize("decode", DECODES)
