@@ -1,4 +1,4 @@
-"""Which method plans a mission if none is named: the best that is installed."""
+"""The method that plans a mission if none is named: the best one that is installed."""
 
 from __future__ import annotations
 
@@ -7,18 +7,18 @@ from mrta_zoo.extras import require
 from mrta_zoo.policies.registry import METHODS
 
 BEST_FIRST = ("eils", "pyvrp", "capam-plus", "nearest")
-"""By the tasks that they complete, and then by the time that they take. The last needs nothing."""
+"""Ranked by the tasks that they complete, then by the time that they take. The last has no optional dependency."""
 
 
 def default_method() -> tuple[str, str]:
-    """The first of `BEST_FIRST` that can be had here, and what the very first is missing, in a sentence.
+    """The first of `BEST_FIRST` whose dependencies are installed, and why it is not the very first.
 
     Returns:
-        The method's name, and the sentence; empty if it is the first.
+        The method's name, and a sentence that says what the very first is missing; empty if this is the first.
     """
     missing = ""
     for name in BEST_FIRST:
-        extra = METHODS[name].extra if name in METHODS else "torch"  # trained policies are no entries there
+        extra = METHODS[name].extra if name in METHODS else "torch"  # trained policies are not in the table
         try:
             if extra is not None:
                 require(extra, f"method {name!r}")

@@ -18,8 +18,10 @@ from mrta_zoo.actions import as_action
 from mrta_zoo.env.observation import Observation, Observer
 from mrta_zoo.mission import Mission
 from mrta_zoo.plan import Plan
+from mrta_zoo.policies.aec_loop import PolicySolver
+from mrta_zoo.policies.neural.learned_solver import LearnedSolver
 from mrta_zoo.policies.protocol import Policy, Solver
-from mrta_zoo.policies.registry import LearnedSolver, PolicySolver, make_solver
+from mrta_zoo.policies.registry import make_solver
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import TOLERANCE, Choice, tightest_rule
