@@ -1,7 +1,7 @@
-"""How many CPU threads trained networks use.
+"""The number of CPU threads that trained networks use.
 
-The networks here are small: with as many threads as there are cores, torch's default, a decision can take twenty times
-as long as with one thread if other programs are at work.
+The networks are small. With one thread per core, torch's default, a decision can take twenty times as long as with one
+thread while other programs run.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from threading import Lock, get_ident
 from mrta_zoo.bounds import check_threads
 
 VARIABLES = ("OMP_NUM_THREADS", "MKL_NUM_THREADS")
-"""Of the environment, by which users say how many threads torch shall have."""
+"""Environment variables by which users set the number of torch's threads."""
 
 _chosen: ContextVar[int | None] = ContextVar("chosen", default=None)
 
 _lock = Lock()
 _blocks: list[tuple[int, int]] = []
-"""The Python threads that are in a block now, each with its number of threads."""
+"""The Python threads inside a block, each with the number of torch's threads there."""
 _usual = 1
-"""What torch used before the first of them."""
+"""The number of torch's threads before the first block."""
 
 
 @contextmanager
 def cpu_threads(count: int) -> Iterator[None]:
-    """Within it torch uses `count` threads, and so do the policies and trainers of this package.
+    """Inside the block torch uses `count` threads, and so do the policies and trainers of this package.
 
     Raises:
         ConfigError: if the number is out of range.
@@ -46,7 +46,7 @@ def cpu_threads(count: int) -> Iterator[None]:
 
 @contextmanager
 def few_threads() -> Iterator[None]:
-    """Within it torch uses one thread, unless `cpu_threads` or one of `VARIABLES` says how many; for small networks."""
+    """Inside the block torch uses one thread, which suits small networks, unless `cpu_threads` or `VARIABLES` set more."""
     count = _chosen.get()
     if count is None and any(name in os.environ for name in VARIABLES):
         yield
@@ -57,13 +57,13 @@ def few_threads() -> Iterator[None]:
 
 @contextmanager
 def _torch_threads(count: int) -> Iterator[None]:
-    """Within it torch uses so many threads for the Python thread that is in it.
+    """Inside the block torch uses this many threads in the current Python thread.
 
-    What torch is told also counts for Python threads that first use torch later. So one that begins within another's
-    block finds the number of that block, and is given what was there before instead.
+    torch's setting also applies to Python threads that first use torch later. Such a thread, if it begins within
+    another's block, finds that block's number; when its own block ends, it gets the number from before the blocks.
     """
     global _usual
-    torch = sys.modules.get("torch")  # heuristics need none, so it is not imported for them
+    torch = sys.modules.get("torch")  # not imported here: heuristics don't need it
     if torch is None:
         yield
         return

@@ -1,4 +1,4 @@
-"""What a method may be told when it plans."""
+"""Options of methods that plan."""
 
 from __future__ import annotations
 
@@ -11,34 +11,33 @@ from mrta_zoo.policies.stop import check_budget
 from mrta_zoo.rules import MaskRule, check_mask_rule
 
 Decode = Literal["greedy", "sample", "augment", "beam"]
-"""How a learned policy chooses: the likeliest task each time; drawn from its probabilities, many times; the likeliest
-with the map seen in each of its 8 symmetries; or by beam search."""
+"""How a learned policy plans: with the likeliest task each time; as the best of many missions drawn from its
+probabilities; as the best with the map in each of its 8 symmetries; or by beam search."""
 
 DEFAULT_SAMPLES: dict[Decode, int] = {"sample": 64, "augment": 64, "beam": 16}
-"""Missions drawn in one go, or the width of the beam."""
+"""Number of missions drawn in one go, or the width of the beam."""
 
 MAX_SAMPLES = 10_000
-"""More at a time than memory holds; a budget draws as many as there is time for, some at a time."""
+"""More would not fit into memory at a time. With a budget, missions are drawn in batches while there is time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SolverOptions:
-    """What any method may be told; each uses what it can.
+    """Options of any method; each uses those that apply to it.
 
     Attributes:
-        seed: of all draws, from 0 to `bounds.MAX_SEED`. Every scenario starts from it, so that a case has the same plan
-            in any company.
-        decode: how learned methods choose: "greedy", the likeliest task each time; "sample", the best of several drawn
-            missions and the greedy one; "augment", the best of the greedy ones with the map seen in each of its 8
-            symmetries and, with a budget, of missions drawn so; "beam", the best that beam search finishes. None is
-            "sample" if there is a budget or a number of samples, else "greedy".
-        samples: missions that "sample" (and "augment" with a budget) draws in one go, or the width of the beam, from 1
-            to `MAX_SAMPLES`; None is `DEFAULT_SAMPLES`.
-        budget: seconds a scenario that methods which search may take, > 0; None leaves it to the method.
+        seed: of all random draws, from 0 to `bounds.MAX_SEED`. Every scenario starts from it, so that a case has the
+            same plan whatever else is planned.
+        decode: how learned methods plan: "greedy", with the likeliest task each time; "sample", the best of several
+            drawn missions and the greedy one; "augment", the best of the greedy ones with the map in each of its 8
+            symmetries and, with a budget, of missions drawn that way; "beam", the best that beam search finishes. None
+            is "sample" if there is a budget or a number of samples, else "greedy".
+        samples: number of missions that "sample" (and "augment" with a budget) draws in one go, or the width of the
+            beam, from 1 to `MAX_SAMPLES`; None is `DEFAULT_SAMPLES`.
+        budget: seconds per scenario for methods that search, > 0; None leaves it to the method.
         mask_rule: what robots may choose, see `rules.MaskRule`. None is "feasible" or, for learned methods, the rule
-            they were trained under. Solvers that plan only what is in time do not need it.
-        threads: how many searches local search carries on at a time, from 1 to `bounds.MAX_THREADS`, if there is a
-            budget.
+            under which they were trained. Solvers that plan only tasks in time ignore it.
+        threads: number of parallel local searches, from 1 to `bounds.MAX_THREADS`, if there is a budget.
 
     Raises:
         ConfigError: if a value is out of range.

@@ -14,31 +14,31 @@ from mrta_zoo.scales import Scales
 from mrta_zoo.scenario import FloatArray, Scenario
 
 RANGE = 1e4
-"""How far robots can go, in sides of the map: 1e6 on a map of side 100, as the authors set it for TAPTC."""
+"""Range of robots, in sides of the map: 1e6 on a map of side 100, the authors' value for TAPTC."""
 TIME_SCALE = 1.1
 """T of the weights, in latest deadlines."""
 MOST_TIMES = 100.0
-"""f / T counts as no more, so that no weight vanishes."""
+"""Largest f / T, so that no weight vanishes."""
 MATCHED = 10.0
-"""Added to the weights of a robot that must be matched. No matching of the others weighs as much per robot: they lose
-at most one match, of weight 1, when it gets one."""
+"""Added to the weights of a robot that must be matched. It outweighs what that costs the others: at most one match, of
+weight 1."""
 
 
 class BigMrtaSolver:
-    """Event-driven, as the environment. Every task that it plans is finished by its deadline.
+    """Event-driven, like the environment. Every planned task is finished by its deadline.
 
-    An edge joins a robot and a task that nobody has taken if the robot, from where and when it gets free, can finish
-    it at a time f by its deadline. It weighs (range - distance) · exp(-f / T). With the authors' range for
-    TAPTC, 1e6 on a map of side 100, the first factor varies by 1.4e-4, so that in effect what is finished soonest
-    weighs most. We keep it, and both constants in proportion to the scenario, so that units do not matter: the range
-    is `RANGE` times the longer side of its frame (`mrta_zoo.scales`), T is `TIME_SCALE` times the latest deadline that
-    can bind (the authors take the latest, cut to a whole number of time units). Weights are divided by the range,
-    which changes no matching; where no deadline is later, f <= T / 1.1, and they lie between 0.4 and 1.
+    An edge joins a robot and an untaken task if the robot, from where and when it is next free, can finish the task at
+    a time f by its deadline. Its weight is (range - distance) · exp(-f / T). With the authors' range for TAPTC, 1e6 on
+    a map of side 100, the first factor varies by 1.4e-4, so that in effect the task finished soonest weighs most. We
+    keep it, with both constants in proportion to the scenario, so that units do not matter: the range is `RANGE` times
+    the longer side of its frame (`mrta_zoo.scales`), and T is `TIME_SCALE` times the latest deadline that can bind
+    (the authors take the latest, cut to a whole number of time units). Weights are divided by the range, which changes
+    no matching. If all deadlines can bind, f <= T / 1.1, and weights lie between 0.4 and 1.
 
-    Two things differ from the published code, which turns missing edges into edges of weight 0, may match a robot
-    to a task that it can only finish late, and counts it as done. Here such matches are dropped. A robot that the
-    matching leaves out although there are tasks that it could do takes the match that it has in the heaviest of the
-    matchings that include it: robots cannot wait (`rules`), and one that does nothing now would do nothing ever.
+    The published code differs in two ways. It turns missing edges into edges of weight 0, may match a robot to a task
+    that it can only finish late, and counts the task as done; here such matches are dropped. And here a robot that has
+    tasks to choose from but no match takes its match in the heaviest matching that includes it: robots cannot wait
+    (`rules`), so that one that does nothing now would never do anything.
     """
 
     def solve(self, scenario: Scenario) -> Plan:
@@ -60,7 +60,7 @@ class BigMrtaSolver:
 
 
 def _weights(mission: Mission, robot: int, length: float, time: float) -> FloatArray:
-    """(N,) what each task weighs for a robot, > 0 and at most 1; 0 if it is taken, or cannot be finished in time."""
+    """(N,) weight of each task for a robot, > 0 and at most 1; 0 if it is taken or cannot be finished in time."""
     scenario = mission.scenario
     distance = np.hypot(*(scenario.task_xy - mission.position[robot]).T)
     near = 1.0 - distance / length
@@ -70,7 +70,7 @@ def _weights(mission: Mission, robot: int, length: float, time: float) -> FloatA
 
 
 def _match(weights: FloatArray, robot: int) -> int:
-    """The task that `robot` gets in the heaviest matching; if it gets none, in the heaviest that gives it one."""
+    """The task of `robot` in the heaviest matching or, if it has none there, in the heaviest that includes it."""
     from scipy.optimize import linear_sum_assignment
 
     tasks = np.flatnonzero(weights.any(axis=0))

@@ -1,7 +1,7 @@
 """Dispatching rules that need no training: random, nearest, earliest deadline.
 
-They see only the observation, as any policy does. Under the mask rule "feasible" (the default) they choose among
-the tasks that the robot can finish by their deadline.
+They see only the observation, like any policy. Under the mask rule "feasible" (the default) they choose among the
+tasks that the robot can finish by their deadlines.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from mrta_zoo.env.observation import EGO_FEATURES, TASK_FEATURES, Observation
 from mrta_zoo.errors import ActionError
 
 TIE = 2e-7
-"""Distances as shares of the frame's longer side (`mrta_zoo.scales`) are equal if they differ by no more: observations
-are rounded to float32."""
+"""Distances that differ by no more than this share of the frame's longer side (`mrta_zoo.scales`) count as equal:
+observations are rounded to float32."""
 
 _X, _Y, _DEADLINE = (TASK_FEATURES.index(name) for name in ("x", "y", "deadline"))
 _EGO_X, _EGO_Y = (EGO_FEATURES.index(name) for name in ("x", "y"))
@@ -24,7 +24,7 @@ Indices = npt.NDArray[np.intp]
 
 
 class RandomPolicy:
-    """Any task that may be chosen, each with the same probability.
+    """Any legal task, each with the same probability.
 
     Args:
         seed: of the draws, >= 0.
@@ -43,7 +43,7 @@ class RandomPolicy:
 
 
 class NearestPolicy:
-    """The nearest task that may be chosen; of equally near ones that of the lowest index."""
+    """The nearest legal task; of equally near ones the one with the lowest index."""
 
     memoryless = True
 
@@ -57,7 +57,7 @@ class NearestPolicy:
 
 
 class EarliestDeadlinePolicy:
-    """The task with the earliest deadline; of equal ones the nearest, then that of the lowest index.
+    """The legal task with the earliest deadline; of equal ones the nearest, then the one with the lowest index.
 
     Deadlines too late to bind (`mrta_zoo.scales.slack_time`) look equal in observations, so they count as equal.
     """
@@ -77,7 +77,7 @@ class EarliestDeadlinePolicy:
 
 
 def _choices(observation: Observation, agent: str) -> Indices:
-    """The tasks that may be chosen, in order of index."""
+    """The legal tasks, in order of index."""
     choices = np.flatnonzero(observation["action_mask"])
     if len(choices) == 0:
         raise ActionError(f"{agent or 'the robot'} has nothing to choose; it is not its turn, or it is retired")
@@ -85,7 +85,7 @@ def _choices(observation: Observation, agent: str) -> Indices:
 
 
 def _nearest(observation: Observation, tasks: Indices) -> Indices:
-    """Those of `tasks` that are nearest to the robot, in order of index."""
+    """The tasks of `tasks` nearest to the robot, in order of index."""
     seen = observation["observation"]
     if tasks[0] == noop(len(seen["tasks"])):  # which then is the only choice
         return tasks
@@ -95,6 +95,6 @@ def _nearest(observation: Observation, tasks: Indices) -> Indices:
 
 
 def _least(tasks: Indices, values: npt.NDArray[np.floating], tie: float = TIE) -> Indices:
-    """Those of `tasks` whose value is the least, up to `tie`."""
+    """The tasks of `tasks` with the least value, up to `tie`."""
     least: Indices = tasks[values <= values.min() + tie]
     return least

@@ -14,7 +14,7 @@ from mrta_zoo.bounds import check_seed
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.classical.exact.task_sets import IntArray, within_reach
-from mrta_zoo.policies.classical.on_time import Routes, on_time
+from mrta_zoo.policies.classical.drop_late import Routes, drop_late
 from mrta_zoo.policies.stop import TimeLimit, check_budget
 from mrta_zoo.reach import in_time
 from mrta_zoo.rules import travel_time
@@ -76,7 +76,7 @@ class PyVrpSolver:
         tasks = np.flatnonzero(within_reach(scenario).any(axis=0))
         routes: Routes = ((),) * scenario.num_robots
         if len(tasks):
-            routes = on_time(scenario, self._search(scenario, tasks))
+            routes = drop_late(scenario, self._search(scenario, tasks))
         return Plan(routes, scenario.name, "pyvrp")
 
     def _search(self, scenario: Scenario, tasks: IntArray) -> list[list[int]]:

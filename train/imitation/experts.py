@@ -28,7 +28,7 @@ from mrta_zoo.train.distribution import draw_size, training_generator
 from mrta_zoo.train.streams import Stream, random_numbers
 from mrta_zoo.verify import verify
 
-ITERATIONS_A_TASK = 24
+ITERATIONS_PER_TASK = 24
 """How long the search (`EilsSolver`) looks for each plan: about 0.1 s with 100 tasks, within 1 % of its best."""
 SHARD = 500
 """Plans a file."""
@@ -76,7 +76,7 @@ def make_shard(config: TrainConfig, first: int, folder: Path) -> Path:
     from mrta_zoo.policies.classical.local_search.eils import EilsConfig, EilsSolver
 
     # Refilling by deadline is younger than the shipped policies: these plans are the ones that they imitated.
-    solver = EilsSolver(config=EilsConfig(iterations_a_task=ITERATIONS_A_TASK, by_deadline=0.0))
+    solver = EilsSolver(config=EilsConfig(iterations_per_task=ITERATIONS_PER_TASK, by_deadline=0.0))
     routes = [solver.solve(expert_scenario(config, number)).routes for number in range(first, first + SHARD)]
     path = shard_path(folder, first)
     with replacing(path) as partial, partial.open("wb") as file:

@@ -12,7 +12,7 @@ from mrta_zoo.policies.classical.exact.relaxation import most_completable
 from mrta_zoo.policies.classical.exact.selection import Team, select_sets
 from mrta_zoo.policies.classical.exact.task_sets import task_sets
 from mrta_zoo.policies.classical.local_search.eils import EilsSolver
-from mrta_zoo.policies.classical.on_time import Routes, on_time
+from mrta_zoo.policies.classical.drop_late import Routes, drop_late
 from mrta_zoo.policies.stop import TimeLimit, check_budget
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify
@@ -74,7 +74,7 @@ class ExactSolver:
                 break
             teams, all_found = self._teams(scenario, only_largest, limit)
             selection = select_sets(teams, scenario.num_tasks, disjoint=not only_largest, limit=limit)
-            routes = on_time(scenario, [selection.routes.get(robot, []) for robot in range(scenario.num_robots)])
+            routes = drop_late(scenario, [selection.routes.get(robot, []) for robot in range(scenario.num_robots)])
             best, completed = _best(scenario, [best, routes])
             if not all_found:
                 break

@@ -1,4 +1,4 @@
-"""Functions compiled by Numba, and kept on disk for the next process where that can be."""
+"""Functions compiled by Numba and, where possible, cached on disk for the next process."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ NOT_KEPT = (
 
 
 def compiled(function: Function) -> Function:
-    """`function`, compiled at its first call. It lets other threads go on.
+    """`function`, compiled at its first call. It releases the GIL.
 
-    What cannot be kept on disk (a read-only installation without a home, a full disk) or is damaged there is compiled
-    anew; the first is logged as a warning, once, which by default goes to standard error.
+    If the cache cannot be written (a read-only installation without a home, a full disk) or is damaged, the function is
+    compiled again. The former is logged as a warning, once, which by default goes to standard error.
     """
     made: Any = njit(nogil=True)(function)
     if made is function:  # with NUMBA_DISABLE_JIT
@@ -37,7 +37,7 @@ def compiled(function: Function) -> Function:
 
 
 class _OptionalCache:
-    """Numba's cache on disk of one function, which is compiled all the same if it fails."""
+    """Numba's cache of one function on disk; if it fails, the function is compiled as if there were none."""
 
     def __init__(self, kept: Any) -> None:
         self._kept = kept

@@ -52,7 +52,7 @@ class EilsConfig:
     """Parameters of the search. The unit of time is the mean time per visit in the first plan.
 
     Attributes:
-        iterations_a_task: number of iterations per task of a search without a budget, >= 1.
+        iterations_per_task: number of iterations per task of a search without a budget, >= 1.
         least_iterations: minimum number of iterations of such a search, >= 1.
         removals: mean number of visits that a perturbation removes, >= 1.
         noise: the random weights of Shift lie between 1 and 1 + noise, >= 0.
@@ -66,7 +66,7 @@ class EilsConfig:
         ConfigError: if a value is out of range.
     """
 
-    iterations_a_task: int = 8
+    iterations_per_task: int = 8
     least_iterations: int = 800
     removals: float = 16.0
     noise: float = 1.0
@@ -77,7 +77,7 @@ class EilsConfig:
     cold: float = 0.1
 
     def __post_init__(self) -> None:
-        for field in ("iterations_a_task", "least_iterations", "removals"):
+        for field in ("iterations_per_task", "least_iterations", "removals"):
             if not 1 <= getattr(self, field) < math.inf:
                 raise ConfigError(f"{field} is {getattr(self, field)}; expected a number >= 1")
         for field in ("reward", "hot", "cold"):
@@ -143,7 +143,7 @@ class EilsSolver:
     def _stop(self, scenario: Scenario) -> StoppingCriterion:
         if self._budget is not None:
             return TimeLimit.of(self._budget)
-        return MaxIterations(max(self._config.iterations_a_task * scenario.num_tasks, self._config.least_iterations))
+        return MaxIterations(max(self._config.iterations_per_task * scenario.num_tasks, self._config.least_iterations))
 
 
 def worth(tours: Tours) -> Worth:

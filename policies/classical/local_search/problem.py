@@ -1,4 +1,4 @@
-"""A scenario as the arrays that compiled searches read."""
+"""A scenario as arrays for compiled searches."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from mrta_zoo.rules import travel_time
 from mrta_zoo.scenario import FloatArray, Scenario
 
 TOLERANCE = 1e-9
-"""Share of a time by which the look-up of an insertion may be wrong; insertions are checked exactly."""
+"""Relative error of a time when an insertion is judged by its Shift. Insertions themselves are checked exactly."""
 
 
 class Problem(NamedTuple):
-    """N tasks and M robots. The start of robot k is place N + k.
+    """N tasks and M robots. Places are the tasks, then the robots' starts: robot k starts at place N + k.
 
     Attributes:
         distance: (N + M, N) from each place to each task, in distance units.
         work: (M, N) time that each robot works at each task.
         deadline: (N,) of each task.
-        latest: (M, N) when each robot must have reached each task, with the tolerance.
+        latest: (M, N) latest arrival of each robot at each task, with the tolerance.
         speed: (M,) of each robot.
-        neighbours: (N, N') for each task the others, nearest first, at most `MOST_NEIGHBOURS`.
-        by_deadline: (N,) the tasks, the earliest deadline first.
+        neighbours: (N, N') for each task the nearest others in order, at most `MOST_NEIGHBOURS`.
+        by_deadline: (N,) the tasks in order of deadline.
     """
 
     distance: FloatArray
@@ -61,6 +61,6 @@ def make_problem(scenario: Scenario) -> Problem:
 
 
 def smallest_scenario() -> Scenario:
-    """One task, one robot: enough to have a search compiled."""
+    """One task and one robot: enough to compile a search."""
     one = np.ones(1)
     return Scenario(task_xy=np.zeros((1, 2)), deadline=one, workload=one, robot_xy=np.zeros((1, 2)), capacity=one)

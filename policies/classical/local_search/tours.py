@@ -1,4 +1,4 @@
-"""The robots' tours while a search changes them, with the times that make insertions quick to judge."""
+"""The robots' tours during a search, with the times by which insertions are judged quickly."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ class Tours(NamedTuple):
     """M tours of N tasks; every visited task is finished by its deadline.
 
     Attributes:
-        tasks: (M, N) the tasks of each tour in order; what lies beyond its size has no meaning, here and below.
+        tasks: (M, N) the tasks of each tour in order. Entries beyond its size have no meaning, here and below.
         finish: (M, N) when each visit is finished.
-        leg: (M, N) how long the robot travels to each visit.
-        max_shift: (M, N) by how much each visit may be delayed without it, or one after it, coming late.
+        leg: (M, N) travel time to each visit.
+        max_shift: (M, N) by how much each visit may be delayed before it, or one after it, is late.
         size: (M,) number of visits.
-        robot: (N,) whose tour each task is in, or -1.
+        robot: (N,) the robot whose tour each task is in, or -1.
     """
 
     tasks: npt.NDArray[np.int64]
@@ -38,7 +38,7 @@ class Tours(NamedTuple):
 
 
 def empty_tours(problem: Problem) -> Tours:
-    """Tours of robots that stay where they are."""
+    """Tours without visits."""
     m, n = problem.work.shape
     return Tours(
         tasks=np.zeros((m, n), dtype=np.int64),
@@ -51,7 +51,7 @@ def empty_tours(problem: Problem) -> Tours:
 
 
 def tours_of(problem: Problem, scenario: Scenario, plan: Plan) -> Tours:
-    """The tours of a plan without the visits that would come late.
+    """The tours of a plan without the visits that would be late.
 
     Raises:
         PlanError: if the plan does not fit the scenario.
@@ -72,7 +72,7 @@ def plan_of(tours: Tours, scenario: Scenario, method: str) -> Plan:
 
 @compiled
 def copy_tour(source: Tours, target: Tours, robot: int) -> None:
-    """Make one robot's tour in `target` what it is in `source`; `target.robot` is left to the caller."""
+    """Copy one robot's tour. `target.robot` is left to the caller."""
     size = source.size[robot]
     target.size[robot] = size
     for position in range(size):
@@ -84,7 +84,7 @@ def copy_tour(source: Tours, target: Tours, robot: int) -> None:
 
 @compiled
 def copy_tours(source: Tours, target: Tours) -> None:
-    """Make `target` what `source` is."""
+    """Copy all tours."""
     for robot in range(len(source.size)):
         copy_tour(source, target, robot)
     target.robot[:] = source.robot
@@ -92,7 +92,7 @@ def copy_tours(source: Tours, target: Tours) -> None:
 
 @compiled
 def insert(problem: Problem, tours: Tours, task: int, robot: int, position: int) -> bool:
-    """Insert `task` unless something would come late, judged exactly as the rules do; whether it was inserted."""
+    """Insert `task` unless a visit would be late by the exact rules; returns whether it was inserted."""
     size = tours.size[robot]
     for index in range(size, position, -1):
         tours.tasks[robot, index] = tours.tasks[robot, index - 1]
@@ -107,7 +107,7 @@ def insert(problem: Problem, tours: Tours, task: int, robot: int, position: int)
 
 @compiled
 def remove(problem: Problem, tours: Tours, robot: int, position: int, count: int) -> None:
-    """Remove `count` consecutive visits from `position` on, and any that rounding makes late without the detour."""
+    """Remove `count` consecutive visits from `position` on, and any that is late by rounding without the detour."""
     while count > 0:
         size = tours.size[robot]
         for index in range(position, position + count):
@@ -121,7 +121,7 @@ def remove(problem: Problem, tours: Tours, robot: int, position: int, count: int
 
 @compiled
 def _retime(problem: Problem, tours: Tours, robot: int, start: int) -> int:
-    """Recompute the times of a tour from position `start` on; the first visit that is late, or -1."""
+    """Recompute the times of a tour from position `start` on; returns the first late visit, or -1."""
     size = tours.size[robot]
     speed = problem.speed[robot]
     place, ready = len(problem.deadline) + robot, 0.0

@@ -313,7 +313,7 @@ def test_the_budget_ends_the_search(solver: IlsSolver | EilsSolver, monkeypatch:
 @pytest.mark.parametrize(
     ("option", "value"),
     [
-        ("iterations_a_task", 0),
+        ("iterations_per_task", 0),
         ("least_iterations", 0),
         ("removals", math.nan),
         ("noise", -1.0),

@@ -28,7 +28,7 @@ CASES = seeded_scenarios(52, 30)
 def routes_of(case: int) -> Routes:
     if case % 10 == 9:  # nothing to learn from
         return ((),) * CASES[case].num_robots
-    return EilsSolver(config=EilsConfig(iterations_a_task=1, least_iterations=30)).solve(CASES[case]).routes
+    return EilsSolver(config=EilsConfig(iterations_per_task=1, least_iterations=30)).solve(CASES[case]).routes
 
 
 def followed(config: NetworkConfig) -> tuple[ScenarioBatch, list[Segment]]:

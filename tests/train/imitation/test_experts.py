@@ -23,7 +23,7 @@ CONFIG = TrainConfig(tasks=(6, 9), reference_tasks=9, min_robots=2, max_robots=3
 @pytest.fixture(autouse=True)
 def small_files(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(experts, "SHARD", 4)
-    monkeypatch.setattr(experts, "ITERATIONS_A_TASK", 2)
+    monkeypatch.setattr(experts, "ITERATIONS_PER_TASK", 2)
 
 
 def test_plans_come_back_with_their_scenarios(tmp_path: Path) -> None:
@@ -31,7 +31,7 @@ def test_plans_come_back_with_their_scenarios(tmp_path: Path) -> None:
     make_shard(CONFIG, 0, tmp_path)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["0000000.npz", "0000004.npz"]
     plans = read_plans(CONFIG, tmp_path, 100)
-    solver = EilsSolver(config=EilsConfig(iterations_a_task=2, by_deadline=0.0))
+    solver = EilsSolver(config=EilsConfig(iterations_per_task=2, by_deadline=0.0))
     scenarios = [expert_scenario(CONFIG, number) for number in range(8)]
     assert [plan.routes for plan in plans] == [solver.solve(scenario).routes for scenario in scenarios]
     for plan, scenario in zip(plans, scenarios, strict=True):

@@ -28,7 +28,7 @@ CPU = torch.device("cpu")
 
 
 def eils_routes(scenario: Scenario) -> Routes:
-    config = EilsConfig(iterations_a_task=1, least_iterations=30)
+    config = EilsConfig(iterations_per_task=1, least_iterations=30)
     return EilsSolver(config=config).solve(scenario).routes
 
 

@@ -34,7 +34,7 @@ TINY = TrainConfig(
 
 
 def plans_of(config: TrainConfig, first: int, count: int) -> list[ExpertPlan]:
-    solver = EilsSolver(config=EilsConfig(iterations_a_task=3, least_iterations=30))
+    solver = EilsSolver(config=EilsConfig(iterations_per_task=3, least_iterations=30))
     scenarios = [expert_scenario(config, number) for number in range(first, first + count)]
     return [ExpertPlan(scenario, solver.solve(scenario).routes) for scenario in scenarios]
 

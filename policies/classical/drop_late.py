@@ -1,4 +1,4 @@
-"""Routes without what is late or done already."""
+"""Routes without late visits."""
 
 from __future__ import annotations
 
@@ -9,15 +9,17 @@ from mrta_zoo.rules import travel_time, visit
 from mrta_zoo.scenario import Scenario
 
 Routes = tuple[tuple[int, ...], ...]
-"""For each robot its tasks, in order."""
+"""The tasks of each robot, in order."""
 
 
-def on_time(scenario: Scenario, routes: Sequence[Iterable[int]]) -> Routes:
-    """The routes less the tasks that an earlier robot has or that would be finished late, and the way to them.
+def drop_late(scenario: Scenario, routes: Sequence[Iterable[int]]) -> Routes:
+    """The routes without the visits that would be late, and without tasks that an earlier robot has.
+
+    A robot does not travel to what is dropped, so that it is earlier at what follows.
 
     Args:
         scenario: the scenario.
-        routes: for each robot its tasks, in order.
+        routes: the tasks of each robot, in order.
     """
     taken: set[int] = set()
     kept: list[list[int]] = []
