@@ -46,7 +46,7 @@ def cpu_threads(count: int) -> Iterator[None]:
 
 @contextmanager
 def few_threads() -> Iterator[None]:
-    """Inside the block torch uses one thread, which suits small networks, unless `cpu_threads` or `VARIABLES` set more."""
+    """Inside the block torch uses one thread, best for small networks, unless `cpu_threads` or `VARIABLES` set it."""
     count = _chosen.get()
     if count is None and any(name in os.environ for name in VARIABLES):
         yield

@@ -59,7 +59,7 @@ RULE, BUDGET = frozenset({"mask_rule"}), frozenset({"budget"})
 
 METHODS: dict[str, Method] = {
     "random": Method(
-        "any feasible task, drawn evenly",
+        "a random feasible task",
         lambda options: PolicySolver(lambda: RandomPolicy(options.seed), options, "random"),
         RULE,
     ),
@@ -85,19 +85,19 @@ METHODS: dict[str, Method] = {
         extra="solvers",
     ),
     "eils": Method(
-        "local search in the spirit of EILS (details unknown): removes and refills strings of visits",
+        "local search in the spirit of EILS (details unknown): removes strings of visits and refills the tours",
         imported("local_search.eils:EilsSolver", "seed", "budget", "threads"),
         BUDGET,
         extra="solvers",
     ),
     "exact": Method(
-        "as many tasks as possible, proven; for small missions",
+        "a provably largest number of tasks; for small missions",
         imported("exact.solver:ExactSolver", "budget"),
         BUDGET,
         extra="solvers",
     ),
     "pyvrp": Method(
-        "the routing solver PyVRP, which searches until the budget ends or nothing more comes",
+        "the routing solver PyVRP; it searches until the budget ends or several searches have stalled",
         imported("pyvrp_solver:PyVrpSolver", "seed", "budget"),
         BUDGET,
         extra="pyvrp",

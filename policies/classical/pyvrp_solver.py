@@ -13,8 +13,8 @@ import numpy as np
 from mrta_zoo.bounds import check_seed
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
-from mrta_zoo.policies.classical.exact.task_sets import IntArray, within_reach
 from mrta_zoo.policies.classical.drop_late import Routes, drop_late
+from mrta_zoo.policies.classical.exact.task_sets import IntArray, within_reach
 from mrta_zoo.policies.stop import TimeLimit, check_budget
 from mrta_zoo.reach import in_time
 from mrta_zoo.rules import travel_time

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.plan import Plan
+from mrta_zoo.policies.classical.drop_late import Routes, drop_late
 from mrta_zoo.policies.classical.exact.relaxation import most_completable
 from mrta_zoo.policies.classical.exact.selection import Team, select_sets
 from mrta_zoo.policies.classical.exact.task_sets import task_sets
 from mrta_zoo.policies.classical.local_search.eils import EilsSolver
-from mrta_zoo.policies.classical.drop_late import Routes, drop_late
 from mrta_zoo.policies.stop import TimeLimit, check_budget
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.verify import verify

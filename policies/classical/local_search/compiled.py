@@ -12,9 +12,9 @@ from numba import njit
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-NOT_KEPT = (
-    "compiled methods are compiled anew in each process, some 20 seconds, as what comes of it cannot be kept; set "
-    "NUMBA_CACHE_DIR to a folder that can be written to and has room"
+NOT_CACHED = (
+    "Numba cannot write its cache, so that each process compiles the local search again (some 20 seconds); set "
+    "NUMBA_CACHE_DIR to a writable folder with room"
 )
 
 
@@ -31,7 +31,7 @@ def compiled(function: Function) -> Function:
         made.enable_caching()
         made._cache = _OptionalCache(made._cache)
     except (RuntimeError, OSError):  # the first is Numba's if there is no folder
-        _say_not_kept()
+        _warn_not_cached()
     result: Function = made
     return result
 
@@ -59,10 +59,10 @@ class _OptionalCache:
                 self._kept.flush()
                 self._kept.save_overload(*arguments)
         except OSError:
-            _say_not_kept()
+            _warn_not_cached()
 
 
 @cache
-def _say_not_kept() -> None:
-    if multiprocessing.parent_process() is None:  # else that has compiled before, and said it for all
-        logging.getLogger(__name__).warning(NOT_KEPT)
+def _warn_not_cached() -> None:
+    if multiprocessing.parent_process() is None:  # else the parent has warned already
+        logging.getLogger(__name__).warning(NOT_CACHED)

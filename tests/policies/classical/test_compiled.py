@@ -15,7 +15,7 @@ pytest.importorskip("numba")
 import numba.core.caching
 import numba.core.config
 
-from mrta_zoo.policies.classical.local_search.compiled import NOT_KEPT, _say_not_kept, compiled
+from mrta_zoo.policies.classical.local_search.compiled import NOT_CACHED, _warn_not_cached, compiled
 
 
 def twice(number: int) -> int:
@@ -26,9 +26,9 @@ def twice(number: int) -> int:
 def folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Path]:
     """Where Numba keeps what is compiled in a test."""
     monkeypatch.setattr(numba.core.config, "CACHE_DIR", str(tmp_path))
-    _say_not_kept.cache_clear()
+    _warn_not_cached.cache_clear()
     yield tmp_path
-    _say_not_kept.cache_clear()
+    _warn_not_cached.cache_clear()
 
 
 def hits(function: Callable[..., Any]) -> int:
@@ -51,8 +51,8 @@ def test_without_a_place_it_is_compiled_all_the_same_and_that_is_said_once(
 
     monkeypatch.setattr(numba.core.caching._CacheLocator, "ensure_cache_path", refuse)
     assert compiled(twice)(2) == compiled(twice)(2) == 4
-    assert caplog.record_tuples == [("mrta_zoo.policies.classical.local_search.compiled", logging.WARNING, NOT_KEPT)]
-    assert "NUMBA_CACHE_DIR" in NOT_KEPT
+    assert caplog.record_tuples == [("mrta_zoo.policies.classical.local_search.compiled", logging.WARNING, NOT_CACHED)]
+    assert "NUMBA_CACHE_DIR" in NOT_CACHED
 
 
 @pytest.mark.parametrize("number", [errno.ENOSPC, errno.EROFS, errno.EACCES])
@@ -64,7 +64,7 @@ def test_a_place_that_takes_nothing(
 
     monkeypatch.setattr(numba.core.caching.IndexDataCacheFile, "_save_data", refuse)
     assert compiled(twice)(2) == compiled(twice)(2) == 4
-    assert caplog.messages == [NOT_KEPT]
+    assert caplog.messages == [NOT_CACHED]
 
 
 @pytest.mark.parametrize("suffix", ["nbi", "nbc"])
