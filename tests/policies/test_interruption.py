@@ -23,7 +23,7 @@ pytest.importorskip("numba")
 from numba.core.dispatcher import Dispatcher
 
 from mrta_zoo.policies.classical.exact import relaxation, selection
-from mrta_zoo.policies.classical.local_search import eils, ils, insertion, tours
+from mrta_zoo.policies.classical.local_search import annealing, eils, ils, insertion, tours
 
 CASE = TaptcGenerator(tasks=(40, 40), robots=(3, 3))(np.random.default_rng(3))
 BUDGET = 20.0
@@ -95,7 +95,7 @@ def test_nothing_is_raised_within_compiled_code(
 
         return call
 
-    for module in (eils, ils, insertion, tours):
+    for module in (annealing, eils, ils, insertion, tours):
         for name, value in list(vars(module).items()):
             if isinstance(value, Dispatcher):
                 monkeypatch.setattr(module, name, watched(value))

@@ -141,3 +141,13 @@ def _retime(problem: Problem, tours: Tours, robot: int, start: int) -> int:
         slack = min(slack, problem.deadline[tours.tasks[robot, position]] - tours.finish[robot, position])
         tours.max_shift[robot, position] = slack
     return -1
+
+
+@compiled
+def total_time(tours: Tours) -> float:
+    """The time at which each robot finishes its tour, summed over the robots."""
+    total = 0.0
+    for robot in range(len(tours.size)):
+        if tours.size[robot] > 0:
+            total += tours.finish[robot, tours.size[robot] - 1]
+    return total

@@ -20,7 +20,8 @@ from mrta_zoo.verify import verify
 pytest.importorskip("numba")
 
 from mrta_zoo.policies.classical.local_search import eils
-from mrta_zoo.policies.classical.local_search.eils import Annealing, EilsConfig, EilsSolver, Moves, anneal
+from mrta_zoo.policies.classical.local_search.annealing import Annealing, Moves, anneal
+from mrta_zoo.policies.classical.local_search.eils import EilsConfig, EilsSolver
 from mrta_zoo.policies.classical.local_search.ils import IlsSolver, shake
 from mrta_zoo.policies.classical.local_search.insertion import fill, fill_by_deadline
 from mrta_zoo.policies.classical.local_search.problem import Problem, make_problem
