@@ -32,6 +32,7 @@ class Slow:
     def __init__(self, seconds: float) -> None:
         self.seconds, self.now = seconds, 0.0
         self.allowed: list[float] = []
+        self.seeds: list[int] = []
 
     def clock(self) -> float:
         return self.now
@@ -57,6 +58,7 @@ def spied(monkeypatch: pytest.MonkeyPatch, slow: Slow) -> list[tuple[float, int]
             assert isinstance(stop, FirstOf)
             limit = stop.criteria[0]
             assert isinstance(limit, TimeLimit)
+            slow.seeds.append(self._seed)
             found.append((limit.end - limit.begin, sum(map(len, plan.routes))))
             return super().improve(scenario, plan, method, MaxIterations(1))
 
@@ -85,6 +87,17 @@ def test_a_method_that_takes_too_long_is_done_without_and_not_asked_again(monkey
     assert slow.allowed == [METHOD_SHARE * 2.0]
     assert [begun_with for _, begun_with in searches] == [0, 0]
     assert [budget for budget, _ in searches] == pytest.approx([2.0 - METHOD_SHARE * 2.0, 2.0])
+
+
+def test_a_method_that_was_too_slow_is_tried_again_where_there_are_less_than_half_the_tasks(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    slow, rng = Slow(5.0), np.random.default_rng(3)
+    spied(monkeypatch, slow)
+    solver = PolishedSolver(slow, 0, 2.0)
+    for tasks, times_asked in ((40, 1), (30, 1), (19, 2)):
+        solver.solve(TaptcGenerator(tasks=(tasks, tasks), robots=(2, 2))(rng))
+        assert len(slow.allowed) == times_asked
 
 
 def test_warming_up_tells_whether_there_is_time_for_the_method(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -134,6 +147,7 @@ def test_other_threads_search_while_the_method_plans(monkeypatch: pytest.MonkeyP
     assert plan.method == "slow+polish"
     visits = sum(map(len, make_solver("edf").solve(scenario).routes))
     assert sorted(searches) == [(1.75, visits), (2.0, 0)]
+    assert sorted(slow.seeds) == [0, 1]
 
 
 @pytest.mark.parametrize(("seconds", "left"), [(0.25, 1.75), (3.0, -1.0)])
