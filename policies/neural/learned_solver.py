@@ -32,15 +32,7 @@ class LearnedSolver:
 
     def solve(self, scenario: Scenario) -> Plan:
         """A plan for `scenario`."""
-        options = self.options
-        return self.policy.solve(
-            scenario,
-            decode=options.decode or "greedy",
-            samples=options.samples,
-            budget=options.budget,
-            mask_rule=options.mask_rule,
-            seed=options.seed,
-        )
+        return self.policy.solve_with(scenario, self.options)
 
     def solve_within(self, scenario: Scenario, limit: TimeLimit) -> Plan | None:
         """The best plan found within `limit`, or None if not even the greedy mission is finished by then."""

@@ -182,8 +182,12 @@ class NeuralPolicy:
             ConfigError: if an option is out of range.
         """
         options = SolverOptions(decode=decode, samples=samples, budget=budget, mask_rule=mask_rule, seed=seed)
-        limit = None if budget is None else TimeLimit.of(budget)
-        return self._plan(scenario, self._decoding(options, limit, must_plan=True))
+        return self.solve_with(scenario, options)
+
+    def solve_with(self, scenario: Scenario, options: SolverOptions) -> Plan:
+        """As `solve`, with the options in one object."""
+        limit = None if options.budget is None else TimeLimit.of(options.budget)
+        return self._plan(scenario, options, limit, must_plan=True)
 
     def solve_within(self, scenario: Scenario, limit: TimeLimit, options: SolverOptions | None = None) -> Plan | None:
         """As `solve`, but None if not even the greedy mission is finished in time.
@@ -194,12 +198,13 @@ class NeuralPolicy:
             options: how to plan; by default greedily.
         """
         try:
-            return self._plan(scenario, self._decoding(options or SolverOptions(), limit, must_plan=False))
+            return self._plan(scenario, options or SolverOptions(), limit, must_plan=False)
         except OutOfTimeError:
             return None
 
-    def _decoding(self, options: SolverOptions, limit: TimeLimit | None, must_plan: bool) -> Decoding:
-        return Decoding(
+    @few_threads()
+    def _plan(self, scenario: Scenario, options: SolverOptions, limit: TimeLimit | None, must_plan: bool) -> Plan:
+        how = Decoding(
             decode=options.decode or "greedy",
             samples=options.samples,
             limit=limit,
@@ -207,9 +212,6 @@ class NeuralPolicy:
             mask_rule=options.mask_rule or self.info.mask_rule,
             seed=options.seed,
         )
-
-    @few_threads()
-    def _plan(self, scenario: Scenario, how: Decoding) -> Plan:
         return Plan(best_plan(self.network, scenario, how).routes, scenario.name, self.name)
 
     @few_threads()
