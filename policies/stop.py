@@ -1,4 +1,4 @@
-"""When a search ends: stopping criteria, made once for each mission that is planned and handed to all that search."""
+"""Stopping criteria of searches, made once for each mission that is planned and handed down to all that search."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class StoppingCriterion(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class MaxIterations:
-    """Ends after so many iterations, >= 1."""
+    """Ends after `count` iterations, >= 1."""
 
     count: int
 
@@ -51,7 +51,7 @@ class MaxIterations:
 
 @dataclass(frozen=True, slots=True)
 class NoImprovement:
-    """Ends after so many iterations in a row without an improvement, >= 1."""
+    """Ends after `count` iterations in a row without an improvement, >= 1."""
 
     count: int
 
@@ -80,7 +80,7 @@ class TimeLimit:
 
     @classmethod
     def of(cls, seconds: float) -> TimeLimit:
-        """From now on for so many seconds."""
+        """From now on, for this many seconds."""
         now = time.perf_counter()
         return cls(now, now + seconds)
 
