@@ -21,8 +21,9 @@ from mrta_zoo.io.paths import make_folder
 from mrta_zoo.io.records import write_records
 from mrta_zoo.mission import Mission
 from mrta_zoo.policies.cpu_threads import cpu_threads
+from mrta_zoo.policies.neural.learned_solver import load_learned
 from mrta_zoo.policies.protocol import Policy
-from mrta_zoo.policies.registry import load_learned, make_solver
+from mrta_zoo.policies.registry import make_solver
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.show.plan.picture import save_plan_picture
 from mrta_zoo.show.plan.text import totals
