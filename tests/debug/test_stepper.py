@@ -58,7 +58,7 @@ def move(stepper: Stepper, name: str, number: int) -> None:
 
 
 @pytest.mark.parametrize("method", ["random", "nearest"])
-@settings(max_examples=50, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=50, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
 @given(scenario=scenarios(), moves=st.lists(st.tuples(st.sampled_from(MOVES), st.integers(0, 30)), max_size=25))
 def test_any_way_leads_to_the_state_of_a_fresh_replay(
     method: str, scenario: Scenario, moves: list[tuple[str, int]]

@@ -203,7 +203,7 @@ def test_larger_seeded_scenarios(rule: MaskRule) -> None:
 
 
 @pytest.mark.parametrize("rule", RULES)
-@settings(max_examples=300, deadline=None, derandomize=True)
+@settings(max_examples=300, derandomize=True)
 @given(pairs=st.lists(st.tuples(scenarios(8, 4), decisions(8)), min_size=1, max_size=3))
 def test_hypothesis_finds_no_difference(rule: MaskRule, pairs: list[tuple[Scenario, Chooser]]) -> None:
     run_together([scenario for scenario, _ in pairs], rule, [chooser for _, chooser in pairs])

@@ -93,7 +93,7 @@ def test_many_seeded_scenarios(rule: MaskRule) -> None:
 
 
 @pytest.mark.parametrize("rule", RULES)
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=150, derandomize=True)
 @given(case=scenarios(MAX_TASKS, MAX_ROBOTS), chooser=decisions(MAX_TASKS))
 def test_hypothesis_finds_no_difference(rule: MaskRule, case: Scenario, chooser: Chooser) -> None:
     env = mrta_v0.raw_env(scenario=case, mask_rule=rule, max_tasks=MAX_TASKS, max_robots=MAX_ROBOTS)
@@ -101,7 +101,7 @@ def test_hypothesis_finds_no_difference(rule: MaskRule, case: Scenario, chooser:
 
 
 @pytest.mark.parametrize("rule", RULES)
-@settings(max_examples=50, deadline=None, derandomize=True)
+@settings(max_examples=50, derandomize=True)
 @given(case=scenarios(), seed=st.integers(0, 1000))
 def test_rewards_add_up_to_the_completion(rule: MaskRule, case: Scenario, seed: int) -> None:
     for reward in ("completion", "individual"):

@@ -54,7 +54,7 @@ def test_optimal_on_many_scenarios_with_ties() -> None:
         check_optimal(scenario)
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=60, derandomize=True)
 @given(scenario=scenarios(4, 2))
 def test_hypothesis_finds_none_better(scenario: Scenario) -> None:
     check_optimal(scenario)
