@@ -10,7 +10,6 @@ from pathlib import Path
 from threading import Lock
 from typing import Any
 
-from mrta_zoo.eval.significance import Estimate
 from mrta_zoo.extras import importing
 from mrta_zoo.io.atomic import replacing
 from mrta_zoo.show.figure import LiteralFigure
@@ -66,35 +65,6 @@ def plain(axes: Any, grid: str = "x") -> None:
     axes.tick_params(which="both", colors=FAINT, labelsize=8.5, length=0)
     for spine in axes.spines.values():
         spine.set_visible(False)
-
-
-def draw_interval(
-    axes: Any,
-    y: float,
-    estimate: Estimate,
-    look: tuple[str, str],
-    size: float,
-    filled: bool = True,
-    edge: float = 1.0,
-    **bar: Any,
-) -> None:
-    """A mean as a mark, with its interval as a bar if there is one.
-
-    Args:
-        axes: to draw on.
-        y: height of both.
-        estimate: mean and interval, in the unit of the x-axis.
-        look: colour of both, and marker.
-        size: of the marker, in points.
-        filled: whether the marker is.
-        edge: width of its edge, in points.
-        bar: how the bar looks otherwise.
-    """
-    colour, marker = look
-    if estimate.low is not None and estimate.high is not None:
-        axes.plot((estimate.low, estimate.high), (y, y), color=colour, linewidth=2, zorder=2, **bar)
-    axes.plot(estimate.mean, y, marker, color=colour, markersize=size, zorder=3, markeredgewidth=edge,
-              markerfacecolor=colour if filled else "white")  # fmt: skip
 
 
 _setting = Lock()

@@ -1,4 +1,4 @@
-"""Differences between variants, with intervals that know of both sources of chance: training runs and scenarios.
+"""Differences between arms, with intervals that know of both sources of chance: training runs and scenarios.
 
 A difference is that of means over runs and scenarios. Its variance is estimated as the sum of
 
@@ -21,12 +21,13 @@ where a variant that is alone with its decoder scatters four times as much as th
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
+import pandas as pd
 from scipy import stats
 
-from mrta_zoo.eval.significance import ALL_EQUAL, LEVEL, TOO_FEW, Estimate, Values
+from mrta_zoo.eval.significance import ALL_EQUAL, LEVEL, SIGNIFICANT, TOO_FEW, Estimate, Values, holm
 from mrta_zoo.eval.studies.rows import RunRow
 
 Runs = Mapping[int, Mapping[int, Values]]
@@ -40,6 +41,7 @@ class Effect:
     Attributes:
         difference: with its interval; n is the number of runs.
         p: of no difference, two-sided.
+        adjusted_p: the same, adjusted for a family of comparisons, see `adjusted`.
         runs_error: standard error that comes from the training runs.
         scenarios_error: standard error that comes from the scenarios.
         freedom: degrees of freedom of the interval.
@@ -47,26 +49,41 @@ class Effect:
 
     difference: Estimate
     p: float | None = None
+    adjusted_p: float | None = None
     runs_error: float | None = None
     scenarios_error: float | None = None
     freedom: float | None = None
 
+    @property
+    def significant(self) -> bool:
+        """Whether there is a difference after adjustment."""
+        return self.adjusted_p is not None and self.adjusted_p < SIGNIFICANT
+
+    @property
+    def columns(self) -> dict[str, float | str | None]:
+        """All of it, as columns of a table."""
+        return {
+            **self.difference.columns("difference"), "p": self.p, "adjusted_p": self.adjusted_p,
+            "runs_standard_error": self.runs_error, "scenarios_standard_error": self.scenarios_error,
+            "degrees_of_freedom": self.freedom, "runs": self.difference.n, "note": self.difference.note,
+        }  # fmt: skip
+
+
+def adjusted(effects: Sequence[Effect]) -> list[Effect]:
+    """A family of comparisons, with p-values adjusted for their number by Holm's method."""
+    found = holm([effect.p for effect in effects])
+    return [replace(effect, adjusted_p=p) for effect, p in zip(effects, found, strict=True)]
+
 
 def arrange(rows: Iterable[RunRow]) -> dict[tuple[str, str], dict[int, dict[int, Values]]]:
     """The runs of each (variant, distribution)."""
-    lists: dict[tuple[str, str], dict[int, dict[int, list[tuple[int, float]]]]] = {}
-    for row in rows:
-        seeds = lists.setdefault((row.variant, row.distribution), {})
-        seeds.setdefault(row.seed, {}).setdefault(row.robots, []).append(
-            (row.scenario, 100 * row.completed / row.tasks)
-        )
-    return {
-        key: {
-            seed: {robots: np.array([value for _, value in sorted(found)]) for robots, found in of_seed.items()}
-            for seed, of_seed in seeds.items()
-        }
-        for key, seeds in lists.items()
-    }
+    frame = pd.DataFrame(map(asdict, rows)).sort_values("scenario")
+    frame["percent"] = 100 * frame["completed"] / frame["tasks"]
+    found: dict[tuple[str, str], dict[int, dict[int, Values]]] = {}
+    for key, group in frame.groupby(["variant", "distribution", "seed", "robots"]):
+        variant, distribution, seed, robots = key
+        found.setdefault((variant, distribution), {}).setdefault(seed, {})[robots] = group["percent"].to_numpy()
+    return found
 
 
 def equal_weights(robots: Sequence[int]) -> dict[int, float]:
