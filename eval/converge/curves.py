@@ -11,12 +11,14 @@ from mrta_zoo.digits import full
 from mrta_zoo.eval.machine import Machine
 from mrta_zoo.eval.manifest import Manifest
 from mrta_zoo.eval.report import wording
-from mrta_zoo.eval.report.figure_style import FAINT, INK, new_figure, plain, style_of
+from mrta_zoo.eval.report.figure_style import new_figure, style_of
 from mrta_zoo.eval.report.made import busy_note, how_made
 from mrta_zoo.eval.report.parts import Picture, Report, Section, Table
 from mrta_zoo.eval.rows import KEY, Row
 from mrta_zoo.eval.significance import estimate_mean
 from mrta_zoo.extras import importing
+from mrta_zoo.show.axes import plain
+from mrta_zoo.show.palette import FAINT, INK
 from mrta_zoo.wording import counted
 
 with importing("report", "a figure"):
@@ -117,7 +119,7 @@ def draw_curves(curves: pd.DataFrame) -> Figure:
     methods = curves["method"].unique().tolist()
     figure = new_figure(7.6 * len(sizes), 4.8)
     for axes, tasks in zip(figure.subplots(1, len(sizes), squeeze=False)[0], sizes, strict=True):
-        plain(axes, "both")
+        plain(axes)
         panel = curves[curves["tasks"] == tasks]
         named = []  # to matplotlib itself, a label that begins with _ is none
         for method, line in panel.sort_values("mean_seconds").groupby("method", sort=False):

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 from threading import Lock
-from typing import Any
 
 from mrta_zoo.extras import importing
 from mrta_zoo.io.atomic import replacing
@@ -18,8 +17,6 @@ with importing("report", "a figure"):
     import matplotlib
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
-
-INK, FAINT, GRID = "#22303c", "#5d6874", "#e3e7eb"
 
 STYLES = {
     "random": ("#b0b7be", "o"),
@@ -56,15 +53,6 @@ def new_figure(width: float, height: float) -> Figure:
     """An empty figure, sides in inches."""
     layout = ConstrainedLayoutEngine(h_pad=0.06, w_pad=0.06, hspace=0.06, wspace=0.05)
     return LiteralFigure(figsize=(width, height), facecolor="white", layout=layout)
-
-
-def plain(axes: Any, grid: str = "x") -> None:
-    """No frame, a light grid along `grid` ("x", "y" or "both"), quiet labels."""
-    axes.grid(axis=grid, color=GRID, linewidth=0.9)
-    axes.set_axisbelow(True)
-    axes.tick_params(which="both", colors=FAINT, labelsize=8.5, length=0)
-    for spine in axes.spines.values():
-        spine.set_visible(False)
 
 
 _setting = Lock()

@@ -7,9 +7,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from mrta_zoo.eval.report import wording
-from mrta_zoo.eval.report.figure_style import FAINT, INK, new_figure, plain
+from mrta_zoo.eval.report.figure_style import new_figure
 from mrta_zoo.eval.significance import Estimate
 from mrta_zoo.extras import importing
+from mrta_zoo.show.axes import plain
+from mrta_zoo.show.palette import FAINT, INK
 
 with importing("report", "a figure"):
     from matplotlib.figure import Figure

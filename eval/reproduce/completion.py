@@ -5,10 +5,12 @@ from __future__ import annotations
 import pandas as pd
 
 from mrta_zoo.eval.report import wording
-from mrta_zoo.eval.report.figure_style import FAINT, INK, new_figure, plain, style_of
+from mrta_zoo.eval.report.figure_style import new_figure, style_of
 from mrta_zoo.eval.report.parts import Picture, Section, Table
 from mrta_zoo.eval.reproduce.results import BOOTSTRAP, Results
 from mrta_zoo.extras import importing
+from mrta_zoo.show.axes import plain
+from mrta_zoo.show.palette import FAINT, INK
 from mrta_zoo.wording import counted
 
 with importing("report", "a figure"):
@@ -49,14 +51,15 @@ def draw_boxes(results: Results, tasks: int) -> Figure:
         axes.set_title(group.label, fontsize=10, color=INK, loc="left")
         boxes = axes.boxplot(
             [results.select(group, method)["percent"].to_numpy() for method in methods],
-            orientation="horizontal", tick_labels=methods, widths=0.62, patch_artist=True, showmeans=True,
+            orientation="horizontal", manage_ticks=False, widths=0.62, patch_artist=True, showmeans=True,
             flierprops={"marker": ".", "markersize": 4, "markeredgecolor": FAINT},
             meanprops={"marker": "D", "markersize": 4.5, "markerfacecolor": "white", "markeredgecolor": INK},
             medianprops={"color": INK, "linewidth": 1.8}, whiskerprops={"color": FAINT}, capprops={"color": FAINT},
         )  # fmt: skip
         for box, method in zip(boxes["boxes"], methods, strict=True):
             box.set(facecolor=style_of(method, methods)[0], alpha=0.45, edgecolor="none")
-    axes.invert_yaxis()
+    figure.axes[0].set_yticks(range(1, len(methods) + 1), methods, color=INK)
+    axes.set_ylim(len(methods) + 0.5, 0.5)
     figure.supxlabel(f"tasks completed in time, % of {tasks}", fontsize=9, color=FAINT)
     return figure
 

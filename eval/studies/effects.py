@@ -2,20 +2,20 @@
 
 A difference is that of means over runs and scenarios. Its variance is estimated as the sum of
 
-- s² · Σ c²/n, where c is +1 or −1 for the two variants, n their numbers of runs, and s² the variance between runs of
-  the same variant, pooled as in a one-way analysis of variance over those variants of a question that scatter alike,
-  which are taken to be those with the same decoder: 4 such variants with two seeds have 4 degrees of freedom, not 1;
+- s² · Σ c²/n, where c is +1 or −1 for the two arms, n their numbers of runs, and s² the variance between runs of
+  the same arm, pooled as in a one-way analysis of variance over those arms of a question that scatter alike,
+  which are taken to be those with the same decoder: 4 such arms with two seeds have 4 degrees of freedom, not 1;
 - the variance, over scenarios, of the difference (runs averaged), divided by their number, within each number of
   robots, which is part of the design. It is what pairing by scenario gains.
 
 The interval is Student's with Satterthwaite's degrees of freedom: where the runs' scatter dominates, 3 for 2 seeds of 3
-variants, so that t is 3.2 instead of 1.96. It is not a hierarchical bootstrap because that resamples seeds, too: of two
+arms, so that t is 3.2 instead of 1.96. It is not a hierarchical bootstrap because that resamples seeds, too: of two
 runs it sees half of their variance, and its interval would pretend to know what it does not. An interval from the two
-variants' own runs alone would have 2 degrees of freedom or fewer and say next to nothing. Pooling buys more at the
+arms' own runs alone would have 2 degrees of freedom or fewer and say next to nothing. Pooling buys more at the
 price of that assumption. That runs of equal seeds draw equal training scenarios is not used. The scatter of runs that
 is due to the number of scenarios being finite is counted in both terms, which makes intervals a little wider, not
 narrower. Simulated with two seeds, 95 to 97 of 100 intervals hold the true difference where runs scatter alike, and 90
-where a variant that is alone with its decoder scatters four times as much as the others.
+where an arm that is alone with its decoder scatters four times as much as the others.
 """
 
 from __future__ import annotations
@@ -104,13 +104,13 @@ def effect_of(
     weights: Mapping[int, float],
     alike: Mapping[str, str] | None = None,
 ) -> Effect:
-    """A weighted sum of variants, such as one minus another.
+    """A weighted sum of arms, such as one minus another.
 
     Args:
-        pool: the variants whose runs say how much runs scatter, all those of `coefficients` among them.
-        coefficients: of the variants.
+        pool: the arms whose runs say how much runs scatter, all those of `coefficients` among them.
+        coefficients: of the arms.
         weights: of the numbers of robots.
-        alike: a name for each variant of the pool, the same for those that scatter alike; by default all do.
+        alike: a name for each arm of the pool, the same for those that scatter alike; by default all do.
     """
     values = {name: run_values(runs, weights) for name, runs in pool.items()}
     mean = sum(c * float(np.mean(values[name])) for name, c in coefficients.items())
@@ -143,9 +143,9 @@ def effect_of(
 def _terms_of_runs(
     values: Mapping[str, list[float]], coefficients: Mapping[str, float], alike: Mapping[str, str]
 ) -> list[tuple[float, int]] | None:
-    """What the scatter of runs adds to the variance, with its degrees of freedom, for each kind of variants.
+    """What the scatter of runs adds to the variance, with its degrees of freedom, for each kind of arms.
 
-    None if some kind has one run of each variant, so that nobody knows.
+    None if some kind has one run of each arm, so that nobody knows.
     """
     terms = []
     for kind in dict.fromkeys(alike[name] for name in coefficients):

@@ -9,7 +9,7 @@ import pandas as pd
 
 from mrta_zoo.digits import percentage
 from mrta_zoo.eval.report import wording
-from mrta_zoo.eval.report.figure_style import FAINT, INK, new_figure, plain
+from mrta_zoo.eval.report.figure_style import new_figure
 from mrta_zoo.eval.report.forest import Mark, draw_forest
 from mrta_zoo.eval.report.made import how_made
 from mrta_zoo.eval.report.parts import Picture, Report, Section, Table
@@ -17,6 +17,8 @@ from mrta_zoo.eval.significance import SIGNIFICANT, Estimate
 from mrta_zoo.eval.studies.effects import equal_weights, run_values
 from mrta_zoo.eval.studies.study import MATTERS, Contrast, Study
 from mrta_zoo.extras import importing
+from mrta_zoo.show.axes import plain
+from mrta_zoo.show.palette import FAINT, INK
 from mrta_zoo.wording import counted
 
 with importing("report", "a figure"):
@@ -249,7 +251,7 @@ def _draw_curves(study: Study, data: pd.DataFrame) -> Figure:
     figure = new_figure(4.8 * columns, 3.5 * lines)
     panels = list(figure.subplots(lines, columns, squeeze=False).flat)
     for axes, question in zip(panels, questions, strict=False):
-        plain(axes, "both")
+        plain(axes)
         axes.set_title(question.title, fontsize=10, color=INK, loc="left")
         for arm, colour in zip(question.arms, COLOURS, strict=False):
             runs = data[data["arm"] == arm].pivot(index="update", columns="seed", values="percent")
