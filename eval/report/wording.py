@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from mrta_zoo.digits import percentage as percent
 from mrta_zoo.eval.significance import LEVEL, TOO_FEW, Estimate
 
@@ -11,15 +13,12 @@ DASH = "–"
 
 def estimate(value: Estimate, digits: int = 1) -> str:
     """A difference with its interval in brackets, if there is one; all numbers with their signs."""
-    mean, *ends = (None if each is None else number(each, digits) for each in (value.mean, value.low, value.high))
-    return f"{mean} ({TOO_FEW})" if None in ends else f"{mean} [{', '.join(map(str, ends))}]"
+    return _with_interval(value, lambda each: number(each, digits))
 
 
 def percentage(value: Estimate) -> str:
     """A mean of percentages with its interval in brackets, if there is one; see `digits.percentage`."""
-    mean, *ends = (None if each is None else percent(each).replace("-", "−")
-                   for each in (value.mean, value.low, value.high))  # fmt: skip
-    return f"{mean} ({TOO_FEW})" if None in ends else f"{mean} [{', '.join(map(str, ends))}]"
+    return _with_interval(value, lambda each: percent(each).replace("-", "−"))
 
 
 def number(value: float, digits: int = 1) -> str:
@@ -45,3 +44,9 @@ def seconds(value: float) -> str:
     if value < 0.001:
         return f"{1e6 * value:.3g} µs"
     return f"{1000 * value:.3g} ms" if value < 1 else f"{value:.3g} s"
+
+
+def _with_interval(value: Estimate, write: Callable[[float], str]) -> str:
+    if value.low is None or value.high is None:
+        return f"{write(value.mean)} ({TOO_FEW})"
+    return f"{write(value.mean)} [{write(value.low)}, {write(value.high)}]"

@@ -32,7 +32,7 @@ class Converge:
     """Folders of cases, as for `mrta-zoo eval`, and built-in suites: suite-100 (or builtin), 96 cases with 100 tasks,
     and suite-200, 96 cases with 200."""
     out: Annotated[Path, arg(metavar="DIR")]
-    """Folder for rows, curves and figure; new, empty, or of the same command."""
+    """Folder for rows, report and figure; new, empty, or of the same command."""
     methods: Annotated[str | None, optional("METHOD,METHOD,…")] = None
     """Methods that search, trained ones by sampling. By default ils, eils, pyvrp, capam-plus, and its greedy plan
     polished by local search, as far as they are there."""
