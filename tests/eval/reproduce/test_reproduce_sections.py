@@ -9,6 +9,7 @@ import pytest
 from mrta_zoo.cli.main import main
 from mrta_zoo.eval.machine import Machine
 from mrta_zoo.eval.reproduce import experiment
+from mrta_zoo.eval.reproduce.completion import completion_section
 from mrta_zoo.eval.reproduce.optimality import optimality_section
 from mrta_zoo.eval.reproduce.paired_tests import compare, comparison_section
 from mrta_zoo.eval.reproduce.results import OptimalityRow, Results, frame_of
@@ -84,6 +85,12 @@ def test_the_summary_says_who_is_better_and_where_not() -> None:
     assert not any("Beware" in point for point in points)
     busy = Machine("now", "a processor", 2, 1, "Linux", "Python 3", 3.5)
     assert "Beware: the machine was busy" in summary(made, compare(made), [busy])[-1]
+    # The higher means: 65.25 of all; of other, 364 / 8, with 2 robots; of the two with 7.
+    assert completion_section(made).tables[0].bold == {(0, 1), (2, 1), (1, 2), (0, 3), (2, 3)}
+    # One test over all cases (same has none), two by number of robots: the lesser p counts twice.
+    whole, *apart = [each for each in compare(made) if each.second == "other"]
+    assert whole.t_p == whole.test.t_p
+    assert min(each.t_p for each in apart) == pytest.approx(2 * min(each.test.t_p for each in apart))  # type: ignore[type-var, operator]
     _, by_robots, table = comparison_section(made, compare(made)).tables
     # With 2 robots 42 - 40 and so on: -(2 + 2 + 1 + 2 + 3 + 2 + 2 + 2) / 8 = -2.
     assert by_robots.shown.loc[0, "2 robots"].startswith("−2.00 (p ")

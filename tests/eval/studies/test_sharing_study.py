@@ -112,6 +112,14 @@ def test_the_study_leaves_rows_report_and_pictures(study: Path) -> None:
     mine = [int(row["completed"]) for row in rows if (row["variant"], row["robots"]) == ("shared", "3")]
     # 2 runs x 2 scenarios with 6 tasks each.
     assert float(completion["shared", "3"]["percent"]) == pytest.approx(100 * sum(mine) / 24)
+    for question in QUESTIONS:  # with two comparisons each, so that the lesser p counts twice
+        found = [
+            line
+            for line in lines(study / "differences.csv")
+            if (line["question"], line["robots"]) == (question, "mean")
+        ]
+        p, adjusted = (min(float(line[column]) for line in found) for column in ("p", "adjusted_p"))
+        assert adjusted == pytest.approx(min(1, 2 * p))
     choices = {(line["arm"], line["compared"]): int(line["pairs"]) for line in lines(study / "choices.csv")}
     again = "one network, runs of other seeds"
     # Pairs of 4 networks in 2 runs: 6 x 2; each of 4 networks in 2 runs: 4.
