@@ -8,6 +8,8 @@ import time
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
+from mrta_zoo.wording import counted
+
 BUSY = 0.6
 """Load a core above which times are not to be trusted."""
 LIBRARIES = ("numpy", "torch", "scipy", "numba", "pyvrp", "pandas", "statsmodels", "matplotlib")
@@ -40,16 +42,13 @@ class Machine:
         """Whether others were at work too, so that times are longer than they would be."""
         return self.load is not None and self.load > BUSY * self.cores
 
-    def described(self, threads: str) -> str:
-        """In a line.
-
-        Args:
-            threads: how many torch threads there were, in words.
-        """
+    @property
+    def description(self) -> str:
+        """In a line."""
         load = "unknown" if self.load is None else f"{self.load:g}"
         return (
-            f"{self.processor}, {self.cores} cores usable, load {load} at the beginning, {threads}, {self.system}; "
-            f"{self.libraries}"
+            f"{self.processor}, {counted(self.cores, 'core')} usable, load {load} at the beginning, "
+            f"{counted(self.threads, 'torch thread')} per process, {self.system}; {self.libraries}"
         )
 
 

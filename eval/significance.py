@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy import special, stats
+from scipy import stats
 from statsmodels.stats.multitest import multipletests
 
 Values = npt.NDArray[np.float64]
@@ -26,8 +26,6 @@ LEAST = 5
 LEAST_OF_STRATUM = 3
 """Values that every group needs for resampling within groups."""
 RESAMPLES = 9999
-MOST_T = 10_000.0
-"""Size of a t statistic up to which SciPy inverts the noncentral t distribution in a moment."""
 DIGITS = 9
 """Decimals of a difference that count; what is beyond is rounding of the computer's."""
 
@@ -66,8 +64,6 @@ class PairedTest:
         t_p: p-value of the paired t-test, two-sided.
         wilcoxon_p: p-value of the Wilcoxon signed-rank test, two-sided, equal cases dropped.
         effect: Cohen's d_z, the mean difference in standard deviations of the differences.
-        effect_low: lower end of its interval, from the noncentral t distribution.
-        effect_high: upper end.
         wins: cases in which the first is ahead.
         losses: cases in which the second is ahead.
         note: `TOO_FEW`, `ALL_EQUAL`, `SAME_DIFFERENCE` or empty.
@@ -77,11 +73,14 @@ class PairedTest:
     t_p: float | None
     wilcoxon_p: float | None
     effect: float | None
-    effect_low: float | None
-    effect_high: float | None
     wins: int
     losses: int
     note: str = ""
+
+    @property
+    def ties(self) -> int:
+        """Cases in which they are equal."""
+        return self.difference.n - self.wins - self.losses
 
 
 def estimate_mean(values: Sequence[float] | Values, seed: int, strata: Sequence[Hashable] | None = None) -> Estimate:
@@ -136,20 +135,15 @@ def paired_test(
     estimate = estimate_mean(differences, seed, strata)
     score = int(np.sum(differences > 0)), int(np.sum(differences < 0))
     if n < LEAST:
-        return PairedTest(estimate, None, None, None, None, None, *score, TOO_FEW)
+        return PairedTest(estimate, None, None, None, *score, TOO_FEW)
     if not differences.any():
-        return PairedTest(estimate, None, None, None, None, None, *score, ALL_EQUAL)
+        return PairedTest(estimate, None, None, None, *score, ALL_EQUAL)
     # It drops zeros itself, but of few pairs it then goes through all signs of all of them.
     wilcoxon_p = float(stats.wilcoxon(differences[differences != 0]).pvalue)
     if np.ptp(differences) == 0:  # no spread, so no t
-        return PairedTest(estimate, None, wilcoxon_p, None, None, None, *score, SAME_DIFFERENCE)
+        return PairedTest(estimate, None, wilcoxon_p, None, *score, SAME_DIFFERENCE)
     test = stats.ttest_rel(one, other)
-    effect = float(test.statistic / np.sqrt(n))
-    if abs(test.statistic) > MOST_T:
-        return PairedTest(estimate, float(test.pvalue), wilcoxon_p, effect, None, None, *score)
-    tail = (1 - LEVEL) / 2
-    low, high = special.nctdtrinc(n - 1, [1 - tail, tail], test.statistic) / np.sqrt(n)
-    return PairedTest(estimate, float(test.pvalue), wilcoxon_p, effect, float(low), float(high), *score)
+    return PairedTest(estimate, float(test.pvalue), wilcoxon_p, float(test.statistic / np.sqrt(n)), *score)
 
 
 def holm(p_values: Sequence[float | None]) -> list[float | None]:

@@ -1,37 +1,31 @@
-"""Plan quality against planning time, as a table and as a figure."""
+"""Plan quality against planning time: a line for each method, and how it was made."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from dataclasses import asdict, dataclass
 
-import numpy as np
 import pandas as pd
 
-from mrta_zoo.digits import full, percentage, rounded
-from mrta_zoo.errors import ConfigError
+from mrta_zoo.digits import full
+from mrta_zoo.eval.machine import Machine
+from mrta_zoo.eval.manifest import Manifest
 from mrta_zoo.eval.report import wording
-from mrta_zoo.eval.report.figure_style import FAINT, INK, new_figure, plain, save_figure, style_of
+from mrta_zoo.eval.report.figure_style import new_figure, style_of
+from mrta_zoo.eval.report.made import busy_note, how_made
+from mrta_zoo.eval.report.parts import Picture, Report, Section, Table
 from mrta_zoo.eval.rows import KEY, Row
 from mrta_zoo.eval.significance import estimate_mean
 from mrta_zoo.extras import importing
-from mrta_zoo.io.outputs import Outputs
-from mrta_zoo.io.source import write_text
-from mrta_zoo.show.terminal.console import results_console, say
-from mrta_zoo.show.terminal.sheet import Sheet
+from mrta_zoo.show.axes import plain
+from mrta_zoo.show.palette import FAINT, INK
 from mrta_zoo.wording import counted
 
 with importing("report", "a figure"):
     from matplotlib.figure import Figure
-    from matplotlib.patheffects import withStroke
 
-NEAR = 2.0
-"""Lines that end within this factor of each other have their names in one column."""
 BUDGET_KEY = (*KEY, "budget")
 """The columns that tell rows apart."""
-HALO = [withStroke(linewidth=3, foreground="white")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,124 +47,95 @@ def curves_of(rows: Sequence[BudgetRow], order: Sequence[tuple[str, float | None
         order: methods and budgets as they shall come.
         seed: of the bootstrap over cases, which stays within each number of robots.
     """
-    by_point: dict[tuple[int, str, float | None], list[BudgetRow]] = {}
-    for row in sorted(rows, key=lambda row: row.case):
-        by_point.setdefault((row.tasks, row.method, row.budget), []).append(row)
+    frame = pd.DataFrame(map(asdict, rows)).sort_values("case", kind="stable").astype({"budget": float})
     lines = []
-    for tasks in sorted({row.tasks for row in rows}):
+    for tasks, of_size in frame.groupby("tasks"):
         for method, budget in order:
-            found = by_point.get((tasks, method, budget))
-            if not found:
+            of_budget = of_size["budget"].isna() if budget is None else of_size["budget"] == budget
+            found = of_size[of_budget & (of_size["method"] == method)]
+            if found.empty:
                 continue
-            estimate = estimate_mean(
-                [100 * row.completed / row.tasks for row in found], seed, [row.robots for row in found]
-            )
+            percent = 100 * found["completed"] / found["tasks"]
+            estimate = estimate_mean(percent.to_numpy(), seed, found["robots"].tolist())
             lines.append(
                 {
                     "tasks": tasks, "method": method, "budget": budget, "cases": estimate.n,
-                    "mean_seconds": float(np.mean([row.seconds for row in found])),
-                    **estimate.columns("mean_percent"), "note": estimate.note,
+                    "mean_seconds": float(found["seconds"].to_numpy().mean()), **estimate.columns("mean_percent"),
+                    "note": estimate.note, "estimate": estimate,
                 }
             )  # fmt: skip
     return pd.DataFrame(lines)
 
 
-def draw_curves(curves: pd.DataFrame) -> Figure:
-    """Mean % completed against measured seconds (logarithmic), a panel for each number of tasks, a line a method.
+def curves_report(curves: pd.DataFrame, manifest: Manifest, machines: Sequence[Machine]) -> Report:
+    """All of it.
 
-    Methods are named at the end of their lines, one above the other where they would overlap.
+    Args:
+        curves: see `curves_of`.
+        manifest: what they depend on.
+        machines: on which they were measured.
     """
+    shown = pd.DataFrame(
+        {
+            "method": curves["method"],
+            "tasks": curves["tasks"].map(str),
+            "budget": [wording.DASH if pd.isna(budget) else f"{full(budget)} s" for budget in curves["budget"]],
+            "took": curves["mean_seconds"].map(wording.seconds),
+            "completed": [wording.percentage(estimate) for estimate in curves["estimate"]],
+            "cases": curves["cases"].map(str),
+        }
+    )
+    caption = (
+        f"Tasks completed in time, mean % with its {wording.INTERVAL} over cases (BCa bootstrap), against the measured "
+        "planning time per case, mean. The cases are the same for all methods: a difference between two methods can be "
+        "significant even where their intervals overlap (mrta-zoo reproduce tests it)."
+    )
+    section = Section(
+        title="Tasks completed against planning time",
+        text=busy_note(machines),
+        pictures=(Picture(name="curves", caption=f"{caption} Hollow: no budget.", figure=draw_curves(curves)),),
+        tables=(Table(name="curves", caption=caption, shown=shown, data=curves.drop(columns="estimate")),),
+    )
+    summary = []
+    for tasks, of_size in curves.groupby("tasks"):
+        longest = of_size.groupby("method", sort=False).tail(1).sort_values("mean_percent", ascending=False)
+        ranking = ", ".join(
+            f"{line.method} {line.mean_percent:.1f} % in {wording.seconds(line.mean_seconds)}"
+            for line in longest.itertuples()
+        )
+        cases = f"{counted(tasks, 'task')} ({counted(longest['cases'].max(), 'case')})"
+        summary.append(f"{cases}, tasks completed in time, mean, at the longest budget: {ranking}.")
+    return Report(
+        title="Quality of plans against planning time",
+        summary=tuple(summary),
+        sections=(section,),
+        made=how_made(manifest, manifest.settings, machines),
+    )
+
+
+def draw_curves(curves: pd.DataFrame) -> Figure:
+    """Mean % completed against measured seconds (logarithmic), a panel for each number of tasks, a line a method."""
     sizes = curves["tasks"].unique().tolist()
     methods = curves["method"].unique().tolist()
     figure = new_figure(7.6 * len(sizes), 4.8)
     for axes, tasks in zip(figure.subplots(1, len(sizes), squeeze=False)[0], sizes, strict=True):
-        plain(axes, "both")
-        axes.set_xscale("log")
+        plain(axes)
         panel = curves[curves["tasks"] == tasks]
-        low, high = panel["mean_seconds"].min(), panel["mean_seconds"].max()
-        axes.set_xlim(low / (max(high / low, 10) ** 0.2), high * (max(high / low, 10) ** 0.22) * 1.3)
-        ends = []
-        for method in dict.fromkeys(panel["method"]):
-            line = panel[panel["method"] == method].sort_values("mean_seconds")
-            x, y = line["mean_seconds"].to_numpy(), line["mean_percent"].to_numpy()
+        named = []  # to matplotlib itself, a label that begins with _ is none
+        for method, line in panel.sort_values("mean_seconds").groupby("method", sort=False):
             colour, marker = style_of(method, methods)
-            with_budget = line["budget"].notna().to_numpy()
-            if with_budget.any():
-                axes.plot(x[with_budget], y[with_budget], "-", marker=marker, color=colour, markersize=6, linewidth=1.8,
-                          zorder=3)  # fmt: skip
-                ends.append((y[with_budget][-1], x[with_budget][-1], method, colour))
-            for at, mean in zip(x[~with_budget], y[~with_budget], strict=True):
-                axes.plot(at, mean, marker, color=colour, markersize=7, markerfacecolor="white", zorder=3)
-                axes.annotate(f"{method},\nno budget", (at, mean), (-8, 0), textcoords="offset points", fontsize=9,
-                              color=INK, ha="right", va="center", zorder=4, path_effects=HALO)  # fmt: skip
-        _name_ends(axes, ends)
+            for budgeted, points in line.groupby(line["budget"].notna()):
+                (drawn,) = axes.plot(points["mean_seconds"], points["mean_percent"], "-" if budgeted else "",
+                                     marker=marker, color=colour, markersize=6.5, linewidth=1.8,
+                                     markerfacecolor=colour if budgeted else "white")  # fmt: skip
+                named.append((points["mean_percent"].iloc[-1], drawn, method if budgeted else f"{method}, no budget"))
+        _, lines, names = zip(*sorted(named, key=lambda each: -each[0]), strict=True)
+        axes.legend(lines, names, frameon=False, loc="lower right", fontsize=9, labelcolor=INK)
         axes.set_title(
             f"{counted(tasks, 'task')}, {counted(panel['cases'].max(), 'case')}", fontsize=10, color=INK, loc="left"
         )
+        axes.set_xscale("log")
         axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
-        axes.set_xlabel("measured planning time a case, mean, seconds (logarithmic)", fontsize=9, color=FAINT)
+        axes.set_xlabel("measured planning time per case, mean, seconds (logarithmic)", fontsize=9, color=FAINT)
         axes.set_ylabel(f"tasks completed in time, mean % of {tasks}", fontsize=9, color=FAINT)
     return figure
-
-
-def _name_ends(axes: object, ends: Sequence[tuple[float, float, str, str]]) -> None:
-    """Write names to the right of (y, x), moved apart where they lie closer than a line of text."""
-    low, high = axes.get_ylim()  # type: ignore[attr-defined]
-    line = (high - low) * 0.042
-    furthest = max((x for _, x, _, _ in ends), default=1.0)
-    placed: list[tuple[float, float]] = []
-    for y, x, name, colour in sorted(ends):
-        at, column = y, furthest if furthest < NEAR * x else x
-        for other_x, other_y in placed:
-            if abs(np.log10(x / other_x)) < 1.0 and at < other_y + line:
-                at = other_y + line
-        placed.append((x, at))
-        axes.annotate(  # type: ignore[attr-defined]
-            name, (x, y), (1.12 * column, at), fontsize=9, color=INK, va="center", zorder=4, path_effects=HALO,
-            arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.7, "shrinkA": 0, "shrinkB": 3}
-            if at != y else None,
-        )  # fmt: skip
-
-
-def publish_curves(curves: pd.DataFrame, folder: Path) -> None:
-    """Write ``curves.csv`` and the figure, and print the table and where they are.
-
-    Raises:
-        ConfigError: if a file cannot be written.
-    """
-    text = curves.to_csv(index=False, lineterminator="\n")
-    with Outputs() as outputs:
-        outputs.write("data", folder / "curves.csv", lambda path: write_text(text, path, ConfigError))
-        outputs.write(
-            "figure", folder / "curves.png", lambda path: save_figure(draw_curves(curves), path.with_suffix(""))
-        )
-        tell_curves(curves)
-        for line in outputs.written:
-            say(results_console(), line)
-
-
-def tell_curves(curves: pd.DataFrame) -> None:
-    """Print the curves as a table."""
-    console = results_console()
-    console.print(_sheet(curves), crop=False)
-    say(
-        console,
-        "The cases are the same for all methods: a difference between two methods can be sure even where their "
-        "intervals overlap (mrta-zoo reproduce tests it).",
-    )
-
-
-def _sheet(curves: pd.DataFrame) -> Sheet:
-    lines = [
-        (
-            str(line["tasks"]), line["method"], wording.DASH if pd.isna(line["budget"]) else full(line["budget"]),
-            rounded(line["mean_seconds"], 3), f"{percentage(line['mean_percent'])} [{_ends(line)}]", str(line["cases"]),
-        )
-        for line in curves.to_dict("records")
-    ]  # fmt: skip
-    title = f"Tasks completed, mean % with its {wording.INTERVAL} over cases; budget and time taken in seconds"
-    return Sheet(title, ("tasks", "method", "budget", "took", "completed", "cases"), lines, left=("method",))
-
-
-def _ends(line: dict[str, Any]) -> str:
-    return line["note"] if pd.isna(line["low"]) else f"{percentage(line['low'])}, {percentage(line['high'])}"

@@ -7,13 +7,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-import pandas as pd
-
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.cells import case_cells
-from mrta_zoo.eval.converge.curves import BUDGET_KEY, BudgetRow, curves_of
+from mrta_zoo.eval.converge.curves import BUDGET_KEY, BudgetRow, curves_of, curves_report
 from mrta_zoo.eval.experiment import Experiment
 from mrta_zoo.eval.manifest import make_manifest
+from mrta_zoo.eval.report.parts import Report
 from mrta_zoo.eval.runner import NamedSolver, Solved, row_of, those_there
 from mrta_zoo.io import Case
 from mrta_zoo.policies.cpu_threads import cpu_threads
@@ -36,8 +35,8 @@ def converge(
     every: int = 1,
     seed: int = 0,
     threads: int = 1,
-) -> pd.DataFrame:
-    """Measure what the folder lacks, and return the curves, see `curves_of`.
+) -> Report:
+    """Measure what the folder lacks, and report on all of it. See the flags of `mrta-zoo converge`.
 
     Args:
         out: folder of the rows; new, empty, or of the same command.
@@ -71,10 +70,11 @@ def converge(
                 "seed": seed, "threads": threads}  # fmt: skip
     manifest = make_manifest("converge", settings, cases, dict.fromkeys((*methods, *points)))
     with cpu_threads(threads):
-        rows = Experiment(out, manifest, threads).measure("rows.csv", BudgetRow, BUDGET_KEY, cells)
+        experiment = Experiment(out, manifest, threads)
+        rows = experiment.measure("rows.csv", BudgetRow, BUDGET_KEY, cells)
     order: list[tuple[str, float | None]] = [(composed(name), None) for name in points]
     order += [(composed(name), seconds) for name in methods for seconds in budgets]
-    return curves_of(rows, order, seed)
+    return curves_report(curves_of(rows, order, seed), manifest, experiment.machines)
 
 
 def every_of_each_size(cases: Sequence[Case], every: int) -> list[Case]:

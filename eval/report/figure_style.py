@@ -8,9 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 from threading import Lock
-from typing import Any
 
-from mrta_zoo.eval.significance import Estimate
 from mrta_zoo.extras import importing
 from mrta_zoo.io.atomic import replacing
 from mrta_zoo.show.figure import LiteralFigure
@@ -19,8 +17,6 @@ with importing("report", "a figure"):
     import matplotlib
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
-
-INK, FAINT, GRID = "#22303c", "#5d6874", "#e3e7eb"
 
 STYLES = {
     "random": ("#b0b7be", "o"),
@@ -57,44 +53,6 @@ def new_figure(width: float, height: float) -> Figure:
     """An empty figure, sides in inches."""
     layout = ConstrainedLayoutEngine(h_pad=0.06, w_pad=0.06, hspace=0.06, wspace=0.05)
     return LiteralFigure(figsize=(width, height), facecolor="white", layout=layout)
-
-
-def plain(axes: Any, grid: str = "x") -> None:
-    """No frame, a light grid along `grid` ("x", "y" or "both"), quiet labels."""
-    axes.grid(axis=grid, color=GRID, linewidth=0.9)
-    axes.set_axisbelow(True)
-    axes.tick_params(which="both", colors=FAINT, labelsize=8.5, length=0)
-    for spine in axes.spines.values():
-        spine.set_visible(False)
-
-
-def draw_interval(
-    axes: Any,
-    y: float,
-    estimate: Estimate,
-    look: tuple[str, str],
-    size: float,
-    filled: bool = True,
-    edge: float = 1.0,
-    **bar: Any,
-) -> None:
-    """A mean as a mark, with its interval as a bar if there is one.
-
-    Args:
-        axes: to draw on.
-        y: height of both.
-        estimate: mean and interval, in the unit of the x-axis.
-        look: colour of both, and marker.
-        size: of the marker, in points.
-        filled: whether the marker is.
-        edge: width of its edge, in points.
-        bar: how the bar looks otherwise.
-    """
-    colour, marker = look
-    if estimate.low is not None and estimate.high is not None:
-        axes.plot((estimate.low, estimate.high), (y, y), color=colour, linewidth=2, zorder=2, **bar)
-    axes.plot(estimate.mean, y, marker, color=colour, markersize=size, zorder=3, markeredgewidth=edge,
-              markerfacecolor=colour if filled else "white")  # fmt: skip
 
 
 _setting = Lock()

@@ -11,7 +11,7 @@ from markupsafe import Markup, escape
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.report.figure_style import save_figure
-from mrta_zoo.eval.report.parts import Report
+from mrta_zoo.eval.report.parts import Picture, Report, Table
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.io.source import write_text
 from mrta_zoo.show.terminal.console import results_console, say
@@ -32,10 +32,11 @@ def write_report(report: Report, folder: Path) -> None:
         for section in report.sections:
             for picture in section.pictures:
                 save_figure(picture.figure, folder / picture.name)
-            behind = {picture.name: picture.data for picture in section.pictures}
-            behind |= {table.name: table.data for table in section.tables}
-            for name, data in behind.items():
-                write_text(data.to_csv(index=False, lineterminator="\n"), folder / f"{name}.csv", ConfigError)
+            parts: list[Picture | Table] = [*section.pictures, *section.tables]
+            for part in parts:
+                if part.data is not None:
+                    text = part.data.to_csv(index=False, lineterminator="\n")
+                    write_text(text, folder / f"{part.name}.csv", ConfigError)
         for suffix in ("html", "md"):
             write_text(render(report, suffix, folder), folder / f"report.{suffix}", ConfigError)
     except OSError as error:

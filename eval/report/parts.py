@@ -39,13 +39,13 @@ class Picture:
         name: of the files: PNG, SVG, and the CSV behind it.
         caption: what it shows: unit, number of cases, what marks and intervals are.
         figure: to be written.
-        data: what the CSV file holds.
+        data: what the CSV file holds; None if a table of the same name has the same numbers.
     """
 
     name: str
     caption: str
     figure: Figure
-    data: pd.DataFrame
+    data: pd.DataFrame | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,40 +1,35 @@
-"""Numbers and lists as text."""
+"""Numbers as reports write them."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable
 
 from mrta_zoo.digits import percentage as percent
-from mrta_zoo.eval.significance import LEAST_OF_STRATUM, LEVEL, TOO_FEW, Estimate
+from mrta_zoo.eval.significance import LEVEL, TOO_FEW, Estimate
 
 INTERVAL = f"{100 * LEVEL:.0f} % interval"
-BOOTSTRAP = (
-    f"BCa bootstrap over cases, within each number of robots if it has at least {LEAST_OF_STRATUM} cases everywhere"
-)
 DASH = "–"
 
 
-def estimate(value: Estimate, digits: int = 1, signed: bool = False) -> str:
-    """A mean with its interval in brackets, if there is one."""
-    mean = number(value.mean, digits, signed)
-    if value.low is None or value.high is None:
-        return f"{mean} ({TOO_FEW})"
-    return f"{mean} [{number(value.low, digits, signed)}, {number(value.high, digits, signed)}]"
+def estimate(value: Estimate, digits: int = 1) -> str:
+    """A difference with its interval in brackets, if there is one; all numbers with their signs."""
+    return _with_interval(value, lambda each: number(each, digits))
 
 
 def percentage(value: Estimate) -> str:
     """A mean of percentages with its interval in brackets, if there is one; see `digits.percentage`."""
-    mean, *ends = (None if each is None else percent(each).replace("-", "−")
-                   for each in (value.mean, value.low, value.high))  # fmt: skip
-    return f"{mean} ({TOO_FEW})" if None in ends else f"{mean} [{', '.join(map(str, ends))}]"
+    return _with_interval(value, lambda each: percent(each).replace("-", "−"))
 
 
-def number(value: float, digits: int = 1, signed: bool = False) -> str:
-    """A number with a true minus sign; zero has no sign."""
-    text = f"{value:+.{digits}f}" if signed else f"{value:.{digits}f}"
-    if not text.strip("+-0."):
-        text = text.lstrip("+-")
-    return text.replace("-", "−")
+def number(value: float, digits: int = 1) -> str:
+    """A number with its sign, a true minus among them; zero has none."""
+    text = f"{value:+.{digits}f}"
+    return text.replace("-", "−") if text.strip("+-0.") else text.lstrip("+-")
+
+
+def contrast(name: str, value: Estimate, significant: bool, digits: int = 1) -> str:
+    """What differs, by how much, and whether that is more than chance."""
+    return f"{name} {estimate(value, digits)}, {'significant' if significant else 'not significant'}"
 
 
 def p_value(p: float | None) -> str:
@@ -44,11 +39,6 @@ def p_value(p: float | None) -> str:
     return "< 0.0001" if p < 1e-4 else f"{p:.2g}" if p < 0.995 else "1"
 
 
-def equals(p: str) -> str:
-    """A p-value as text, behind its sign."""
-    return p if p.startswith("<") else f"= {p}"
-
-
 def seconds(value: float) -> str:
     """A time in the unit that suits it."""
     if value < 0.001:
@@ -56,6 +46,7 @@ def seconds(value: float) -> str:
     return f"{1000 * value:.3g} ms" if value < 1 else f"{value:.3g} s"
 
 
-def listed(items: Sequence[str]) -> str:
-    """a, b and c."""
-    return items[0] if len(items) == 1 else f"{', '.join(items[:-1])} and {items[-1]}"
+def _with_interval(value: Estimate, write: Callable[[float], str]) -> str:
+    if value.low is None or value.high is None:
+        return f"{write(value.mean)} ({TOO_FEW})"
+    return f"{write(value.mean)} [{write(value.low)}, {write(value.high)}]"

@@ -1,4 +1,4 @@
-"""The paper's own numbers, to stand beside ours.
+"""The paper's own numbers, to be held against ours.
 
 Source: S. Paul, P. Ghassemi, S. Chowdhury, "Learning Scalable Policies over Graphs for Multi-Robot Task Allocation
 using Capsule Attention Networks" (CapAM), ICRA 2022, tables II to IV. The methods are named as `policies.registry`
@@ -6,6 +6,13 @@ names ours.
 """
 
 from __future__ import annotations
+
+from collections.abc import Mapping
+
+import pandas as pd
+
+from mrta_zoo.eval.report.parts import Section, Table
+from mrta_zoo.wording import counted
 
 SOURCE = "Paul, Ghassemi and Chowdhury, ICRA 2022"
 
@@ -48,5 +55,39 @@ COMPLETION = {
 }  # fmt: skip
 """Table IV: mean % of tasks completed, by number of tasks and robots; 24 cases each."""
 
-NAMES = {"capam": "CapAM, P = 3", "capam-p2": "CapAM, P = 2", "capam-p1": "CapAM, P = 1", "am": "AM-RL"}
-"""What the paper calls the policies of Table IV."""
+
+def paper_section() -> Section:
+    """The paper's tables II to IV."""
+    seconds = pd.DataFrame([SECONDS]).reset_index(drop=True)
+    tables = (
+        Table(
+            name="paper_seconds",
+            caption=f"Table II ({SOURCE}): seconds to plan a mission with 100 tasks, mean over 96 cases.",
+            shown=seconds.map(str),
+            data=seconds,
+        ),
+        _by_robots(
+            "paper_p_values",
+            "Table III: p-values of paired t-tests of CapAM (P = 3) against each method on 24 cases each with 100 "
+            "tasks, not adjusted. The paper gives no sizes of differences.",
+            {(method, 100, robots): p for method, values in P_VALUES.items() for robots, p in values.items()},
+        ),
+        _by_robots(
+            "paper_completion",
+            "Table IV: tasks completed, mean %, 24 cases a number, without intervals.",
+            {(method, *key): value for method, values in COMPLETION.items() for key, value in values.items()},
+        ),
+    )
+    return Section(title="The paper’s numbers", text=(CAVEAT,), tables=tables)
+
+
+def _by_robots(name: str, caption: str, values: Mapping[tuple[str, int, int], float]) -> Table:
+    """A line for each method, a column for each number of tasks and robots."""
+    lines: dict[str, dict[str, str]] = {}
+    for (method, tasks, robots), value in values.items():
+        line = lines.setdefault(method, {"method": method})
+        line[f"{counted(tasks, 'task')}, {counted(robots, 'robot')}"] = f"{value:.3g}"
+    data = pd.DataFrame(
+        [(*key, value) for key, value in values.items()], columns=["method", "tasks", "robots", "value"]
+    )
+    return Table(name=name, caption=caption, shown=pd.DataFrame(list(lines.values())), data=data)

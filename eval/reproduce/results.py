@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 
 import numpy as np
 import pandas as pd
 
 from mrta_zoo.eval.rows import Row
-from mrta_zoo.eval.significance import Estimate, estimate_mean
+from mrta_zoo.eval.significance import LEAST_OF_STRATUM, estimate_mean
 from mrta_zoo.wording import counted
+
+BOOTSTRAP = f"BCa bootstrap over cases, within numbers of robots that all have {LEAST_OF_STRATUM} cases or more"
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,16 +93,20 @@ class Results:
         """Number of cases in a group."""
         return len(self.select(group, self.methods[0]))
 
-    def estimates(self, tasks: int, column: str) -> Iterator[tuple[str, Group, Estimate]]:
-        """The mean of a column for each method and each group of the cases with so many tasks."""
-        for method in self.methods:
-            for group in self.groups(tasks):
-                yield method, group, self.estimate(group, method, column)
-
-    def estimate(self, group: Group, method: str, column: str) -> Estimate:
-        """The mean of a column over a group of cases, with its interval."""
-        rows = self.select(group, method)
-        return estimate_mean(rows[column].to_numpy(float), self.seed, rows["group"].tolist())
+    def estimates(self, tasks: int, column: str) -> pd.DataFrame:
+        """The mean of a column for each group of the cases with so many tasks and each method, with its interval."""
+        lines = []
+        for group in self.groups(tasks):
+            for method in self.methods:
+                rows = self.select(group, method)
+                found = estimate_mean(rows[column].to_numpy(float), self.seed, rows["group"].tolist())
+                lines.append(
+                    {
+                        "method": method, "tasks": tasks, "robots": "all" if group.robots is None else group.robots,
+                        "cases": found.n, **found.columns(f"mean_{column}"), "note": found.note, "estimate": found,
+                    }
+                )  # fmt: skip
+        return pd.DataFrame(lines)
 
 
 def frame_of(rows: Sequence[Row], cases: Sequence[str], methods: Sequence[str]) -> pd.DataFrame:
@@ -115,16 +121,3 @@ def frame_of(rows: Sequence[Row], cases: Sequence[str], methods: Sequence[str]) 
         percent=100 * frame["completed"] / frame["tasks"],
         group=list(zip(frame["tasks"].tolist(), frame["robots"].tolist(), strict=True)),
     )
-
-
-def tidy(estimates: Iterator[tuple[str, Group, Estimate]], quantity: str) -> pd.DataFrame:
-    """Estimates as a frame, one line each."""
-    return pd.DataFrame(
-        [
-            {
-                "method": method, "tasks": group.tasks, "robots": "all" if group.robots is None else group.robots,
-                "cases": found.n, quantity: found.mean, "low": found.low, "high": found.high, "note": found.note,
-            }
-            for method, group, found in estimates
-        ]
-    )  # fmt: skip

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mrta_zoo.eval.report import wording
-from mrta_zoo.eval.report.parts import Picture, Section
-from mrta_zoo.eval.reproduce.completion import case_counts, estimate_table
-from mrta_zoo.eval.reproduce.figures import draw_intervals
+from mrta_zoo.eval.report.parts import Section
+from mrta_zoo.eval.reproduce.completion import estimate_table
 from mrta_zoo.eval.reproduce.results import Results
 from mrta_zoo.wording import counted
 
@@ -37,30 +35,14 @@ def share_section(results: Results) -> Section:
     shares = replace(results, frame=frame.assign(share=100 * frame["completed"] / best)[known])
     if shares.frame.empty:
         return Section(title=title, text=tuple(text))
-    pictures, tables = [], []
-    for tasks in shares.sizes:
-        caption = (
-            f"Tasks completed, mean % of the tasks of the best known plan, {counted(tasks, 'task')}, with its "
-            f"{wording.INTERVAL} "
-            f"({wording.BOOTSTRAP}). {case_counts(shares, tasks)}"
+    tables = [
+        estimate_table(
+            shares, tasks, "share", f"share_of_best_{tasks}",
+            f"Tasks completed, mean % of the tasks of the best known plan, {counted(tasks, 'task')}.",
         )
-        table = estimate_table(
-            shares,
-            tasks,
-            "share",
-            f"share_of_best_{tasks}",
-            f"{caption} Bold: the highest, be the lead significant or not.",
-        )
-        tables.append(table)
-        pictures.append(
-            Picture(
-                name=f"share_of_best_figure_{tasks}",
-                caption=f"{caption} Mark: mean; bar: interval; arrow: below the axis, with the mean.",
-                figure=draw_intervals(shares, tasks, "share", "mean % of the tasks that the best known plan completes"),
-                data=table.data,
-            )
-        )
-    return Section(title=title, text=tuple(text), pictures=tuple(pictures), tables=tuple(tables))
+        for tasks in shares.sizes
+    ]  # fmt: skip
+    return Section(title=title, text=tuple(text), tables=tuple(tables))
 
 
 def _basis(with_reference: int, cases: int) -> str:

@@ -1,1 +1,1 @@
-"""Studies that train networks: runs in processes of their own, held-out scenarios, differences with intervals."""
+"""Studies that train networks, ``mrta-zoo ablate`` and ``mrta-zoo sharing``: runs, held-out scenarios, differences."""

@@ -25,14 +25,14 @@ class Arm:
 
     Attributes:
         name: in rows, and of the runs' folders.
-        config: of its runs, except for the seed.
         title: for people.
+        config: of its runs, except for the seed.
         alike: the same for arms whose runs are taken to scatter alike; by default an arm is alone.
     """
 
     name: str
+    title: str
     config: TrainConfig
-    title: str = ""
     alike: str = ""
 
     @property
@@ -81,6 +81,25 @@ class Question:
         return (self.reference, *self.others)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Claim:
+    """A claim that a study tests, whichever way it comes out.
+
+    Attributes:
+        name: in tables.
+        says: the claim, and what is measured of it: greater than 0 if it holds.
+        question: answers it; the runs of all its arms say how much runs scatter.
+        coefficients: of the arms.
+        weights: of the numbers of robots; by default the mean over those that are compared.
+    """
+
+    name: str
+    says: str
+    question: Question
+    coefficients: Mapping[str, float]
+    weights: Mapping[int, float] | None = None
+
+
 def choose(names: Sequence[str], questions: Mapping[str, Question]) -> list[Question]:
     """The questions with these names, in the study's order.
 
@@ -99,12 +118,16 @@ class Design:
 
     Attributes:
         command: of `mrta-zoo`.
+        title: of the report.
+        each_run: what is trained, in a sentence.
+        scatter: whose runs are taken to scatter alike, in words.
         every_arm: arms by name, those whose runs take longest first; only those that a question needs are trained.
         questions: that are asked.
         seeds: runs of each arm, with seeds 0, 1, ….
         budget: of the runs.
         held_out: the scenarios that arms are compared on.
         compared: the numbers of robots whose mean counts.
+        claims: that are tested, as far as their questions are asked.
         seed_by_seed: whether all arms are trained with one seed before any is with the next.
         settings: what else the manifest has to say.
 
@@ -113,12 +136,16 @@ class Design:
     """
 
     command: str
+    title: str
+    each_run: str
+    scatter: str
     every_arm: Mapping[str, Arm]
     questions: Sequence[Question]
     seeds: int
     budget: TrainingBudget
     held_out: HeldOut
     compared: tuple[int, ...]
+    claims: Sequence[Claim] = ()
     seed_by_seed: bool = False
     settings: Mapping[str, Any] = field(default_factory=dict)
 
@@ -132,6 +159,11 @@ class Design:
         return {name: self.every_arm[name] for question in self.questions for name in question.arms}
 
     @property
+    def distributions(self) -> tuple[Distribution, ...]:
+        """Of the held-out scenarios that some question needs."""
+        return tuple(dict.fromkeys(each for question in self.questions for each in question.distributions))
+
+    @property
     def all_settings(self) -> dict[str, Any]:
         """For the manifest."""
         return {
@@ -141,10 +173,9 @@ class Design:
 
     def cases(self) -> list[Case]:
         """Every held-out scenario."""
-        distributions = dict.fromkeys(each for question in self.questions for each in question.distributions)
         return [
             Case(scenario.name, scenario)
-            for distribution in distributions
+            for distribution in self.distributions
             for robots in self.held_out.robots
             for scenario in self.held_out.scenarios(distribution, robots)
         ]

@@ -1,32 +1,33 @@
-"""Differences between variants, with intervals that know of both sources of chance: training runs and scenarios.
+"""Differences between arms, with intervals that know of both sources of chance: training runs and scenarios.
 
 A difference is that of means over runs and scenarios. Its variance is estimated as the sum of
 
-- s² · Σ c²/n, where c is +1 or −1 for the two variants, n their numbers of runs, and s² the variance between runs of
-  the same variant, pooled as in a one-way analysis of variance over those variants of a question that scatter alike,
-  which are taken to be those with the same decoder: 4 such variants with two seeds have 4 degrees of freedom, not 1;
+- s² · Σ c²/n, where c is +1 or −1 for the two arms, n their numbers of runs, and s² the variance between runs of
+  the same arm, pooled as in a one-way analysis of variance over those arms of a question that scatter alike,
+  which are taken to be those with the same decoder: 4 such arms with two seeds have 4 degrees of freedom, not 1;
 - the variance, over scenarios, of the difference (runs averaged), divided by their number, within each number of
   robots, which is part of the design. It is what pairing by scenario gains.
 
 The interval is Student's with Satterthwaite's degrees of freedom: where the runs' scatter dominates, 3 for 2 seeds of 3
-variants, so that t is 3.2 instead of 1.96. It is not a hierarchical bootstrap because that resamples seeds, too: of two
+arms, so that t is 3.2 instead of 1.96. It is not a hierarchical bootstrap because that resamples seeds, too: of two
 runs it sees half of their variance, and its interval would pretend to know what it does not. An interval from the two
-variants' own runs alone would have 2 degrees of freedom or fewer and say next to nothing. Pooling buys more at the
+arms' own runs alone would have 2 degrees of freedom or fewer and say next to nothing. Pooling buys more at the
 price of that assumption. That runs of equal seeds draw equal training scenarios is not used. The scatter of runs that
 is due to the number of scenarios being finite is counted in both terms, which makes intervals a little wider, not
 narrower. Simulated with two seeds, 95 to 97 of 100 intervals hold the true difference where runs scatter alike, and 90
-where a variant that is alone with its decoder scatters four times as much as the others.
+where an arm that is alone with its decoder scatters four times as much as the others.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
+import pandas as pd
 from scipy import stats
 
-from mrta_zoo.eval.significance import ALL_EQUAL, LEVEL, TOO_FEW, Estimate, Values
+from mrta_zoo.eval.significance import ALL_EQUAL, LEVEL, SIGNIFICANT, TOO_FEW, Estimate, Values, holm
 from mrta_zoo.eval.studies.rows import RunRow
 
 Runs = Mapping[int, Mapping[int, Values]]
@@ -40,6 +41,7 @@ class Effect:
     Attributes:
         difference: with its interval; n is the number of runs.
         p: of no difference, two-sided.
+        adjusted_p: the same, adjusted for a family of comparisons, see `adjusted`.
         runs_error: standard error that comes from the training runs.
         scenarios_error: standard error that comes from the scenarios.
         freedom: degrees of freedom of the interval.
@@ -47,26 +49,41 @@ class Effect:
 
     difference: Estimate
     p: float | None = None
+    adjusted_p: float | None = None
     runs_error: float | None = None
     scenarios_error: float | None = None
     freedom: float | None = None
 
+    @property
+    def significant(self) -> bool:
+        """Whether there is a difference after adjustment."""
+        return self.adjusted_p is not None and self.adjusted_p < SIGNIFICANT
+
+    @property
+    def columns(self) -> dict[str, float | str | None]:
+        """All of it, as columns of a table."""
+        return {
+            **self.difference.columns("difference"), "p": self.p, "adjusted_p": self.adjusted_p,
+            "runs_standard_error": self.runs_error, "scenarios_standard_error": self.scenarios_error,
+            "degrees_of_freedom": self.freedom, "runs": self.difference.n, "note": self.difference.note,
+        }  # fmt: skip
+
+
+def adjusted(effects: Sequence[Effect]) -> list[Effect]:
+    """A family of comparisons, with p-values adjusted for their number by Holm's method."""
+    found = holm([effect.p for effect in effects])
+    return [replace(effect, adjusted_p=p) for effect, p in zip(effects, found, strict=True)]
+
 
 def arrange(rows: Iterable[RunRow]) -> dict[tuple[str, str], dict[int, dict[int, Values]]]:
     """The runs of each (variant, distribution)."""
-    lists: dict[tuple[str, str], dict[int, dict[int, list[tuple[int, float]]]]] = {}
-    for row in rows:
-        seeds = lists.setdefault((row.variant, row.distribution), {})
-        seeds.setdefault(row.seed, {}).setdefault(row.robots, []).append(
-            (row.scenario, 100 * row.completed / row.tasks)
-        )
-    return {
-        key: {
-            seed: {robots: np.array([value for _, value in sorted(found)]) for robots, found in of_seed.items()}
-            for seed, of_seed in seeds.items()
-        }
-        for key, seeds in lists.items()
-    }
+    frame = pd.DataFrame(map(asdict, rows)).sort_values("scenario")
+    frame["percent"] = 100 * frame["completed"] / frame["tasks"]
+    found: dict[tuple[str, str], dict[int, dict[int, Values]]] = {}
+    for key, group in frame.groupby(["variant", "distribution", "seed", "robots"]):
+        variant, distribution, seed, robots = key
+        found.setdefault((variant, distribution), {}).setdefault(seed, {})[robots] = group["percent"].to_numpy()
+    return found
 
 
 def equal_weights(robots: Sequence[int]) -> dict[int, float]:
@@ -87,13 +104,13 @@ def effect_of(
     weights: Mapping[int, float],
     alike: Mapping[str, str] | None = None,
 ) -> Effect:
-    """A weighted sum of variants, such as one minus another.
+    """A weighted sum of arms, such as one minus another.
 
     Args:
-        pool: the variants whose runs say how much runs scatter, all those of `coefficients` among them.
-        coefficients: of the variants.
+        pool: the arms whose runs say how much runs scatter, all those of `coefficients` among them.
+        coefficients: of the arms.
         weights: of the numbers of robots.
-        alike: a name for each variant of the pool, the same for those that scatter alike; by default all do.
+        alike: a name for each arm of the pool, the same for those that scatter alike; by default all do.
     """
     values = {name: run_values(runs, weights) for name, runs in pool.items()}
     mean = sum(c * float(np.mean(values[name])) for name, c in coefficients.items())
@@ -126,9 +143,9 @@ def effect_of(
 def _terms_of_runs(
     values: Mapping[str, list[float]], coefficients: Mapping[str, float], alike: Mapping[str, str]
 ) -> list[tuple[float, int]] | None:
-    """What the scatter of runs adds to the variance, with its degrees of freedom, for each kind of variants.
+    """What the scatter of runs adds to the variance, with its degrees of freedom, for each kind of arms.
 
-    None if some kind has one run of each variant, so that nobody knows.
+    None if some kind has one run of each arm, so that nobody knows.
     """
     terms = []
     for kind in dict.fromkeys(alike[name] for name in coefficients):

@@ -11,8 +11,8 @@ from tyro.conf import arg
 from mrta_zoo.cli.flags import names, takes_flags
 from mrta_zoo.eval.experiment import resumable
 from mrta_zoo.eval.report.files import publish
-from mrta_zoo.eval.studies.ablation.design import PAPER_UPDATES, QUESTIONS, USUAL, ablation
-from mrta_zoo.eval.studies.ablation.report import ablation_report
+from mrta_zoo.eval.studies.ablation import PAPER_UPDATES, QUESTIONS, USUAL, ablation
+from mrta_zoo.eval.studies.report import study_report
 from mrta_zoo.eval.studies.study import perform_study
 
 
@@ -71,4 +71,4 @@ def ablate_command(command: Ablate) -> None:
         command.paper_updates,
         command.held_out,
     )
-    publish(ablation_report(perform_study(design, command.out, command.workers)), command.out)
+    publish(study_report(perform_study(design, command.out, command.workers)), command.out)

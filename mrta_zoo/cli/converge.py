@@ -11,9 +11,9 @@ from tyro.conf import arg
 from mrta_zoo.cli.cases import read_all, shown_cases
 from mrta_zoo.cli.flags import names, optional, takes_flags
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.converge.curves import publish_curves
 from mrta_zoo.eval.converge.experiment import converge
 from mrta_zoo.eval.experiment import resumable
+from mrta_zoo.eval.report.files import publish
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,7 +32,7 @@ class Converge:
     """Folders of cases, as for `mrta-zoo eval`, and built-in suites: suite-100 (or builtin), 96 cases with 100 tasks,
     and suite-200, 96 cases with 200."""
     out: Annotated[Path, arg(metavar="DIR")]
-    """Folder for rows, curves and figure; new, empty, or of the same command."""
+    """Folder for rows, report and figure; new, empty, or of the same command."""
     methods: Annotated[str | None, optional("METHOD,METHOD,…")] = None
     """Methods that search, trained ones by sampling. By default ils, eils, pyvrp, capam-plus, and its greedy plan
     polished by local search, as far as they are there."""
@@ -56,7 +56,7 @@ def converge_command(command: Converge) -> None:
     Raises:
         MrtaError: if an option cannot be used, a file cannot be read or written, or a method fails.
     """
-    curves = converge(
+    report = converge(
         command.out,
         read_all(command.cases),
         shown_cases(command.cases),
@@ -67,7 +67,7 @@ def converge_command(command: Converge) -> None:
         seed=command.seed,
         threads=command.threads,
     )
-    publish_curves(curves, command.out)
+    publish(report, command.out)
 
 
 def seconds_of(text: str) -> list[float]:

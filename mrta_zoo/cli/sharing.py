@@ -11,8 +11,7 @@ from tyro.conf import arg
 from mrta_zoo.cli.flags import names, takes_flags
 from mrta_zoo.eval.experiment import resumable
 from mrta_zoo.eval.report.files import publish
-from mrta_zoo.eval.studies.sharing.design import QUESTIONS, USUAL, sharing
-from mrta_zoo.eval.studies.sharing.report import sharing_report
+from mrta_zoo.eval.studies.sharing import QUESTIONS, USUAL, sharing, sharing_report
 from mrta_zoo.eval.studies.study import perform_study
 
 

@@ -12,6 +12,6 @@ def plain(axes: Any) -> None:
     axes.set_facecolor(GROUND)
     axes.grid(color="white", linewidth=1.2)
     axes.set_axisbelow(True)
-    axes.tick_params(colors=FAINT, labelsize=8, length=0)
+    axes.tick_params(which="both", colors=FAINT, labelsize=8, length=0)
     for spine in axes.spines.values():
         spine.set_visible(False)

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import csv
-import io
-import re
-from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -13,10 +10,9 @@ import pytest
 from mrta_zoo.cli.converge import seconds_of
 from mrta_zoo.cli.main import main
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.eval.converge.curves import BudgetRow, curves_of, draw_curves, tell_curves
+from mrta_zoo.eval.converge.curves import BudgetRow, curves_of, draw_curves
 from mrta_zoo.eval.converge.experiment import every_of_each_size
 from mrta_zoo.io import Case
-from mrta_zoo.show.terminal.console import LiteralConsole
 from mrta_zoo.suite import builtin_suite
 
 
@@ -43,33 +39,7 @@ def test_budgets_make_a_line_and_methods_without_one_a_point() -> None:
     drawn = {tuple(line.get_xdata()): tuple(line.get_ydata()) for line in axes.lines if len(line.get_xdata())}
     assert drawn == {(0.1, 1.0, 10.0): (40, 41, 42), (0.01,): (30,)}
     assert axes.get_xscale() == "log"
-    assert {text.get_text() for text in axes.texts} == {"ils", "nearest,\nno budget"}
-
-
-@pytest.mark.parametrize("width", [36, 47, 60])
-def test_what_is_told_reads_well_on_a_narrow_terminal(width: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    console = LiteralConsole(file=io.StringIO(), width=width)
-    monkeypatch.setattr("mrta_zoo.eval.converge.curves.results_console", lambda: console)
-    rows = [
-        BudgetRow(f"c{case}", "eils", 3000, 2, 2999 + case // 3, (2999 + case // 3) / 3000, 0.0, 0.0, 0.0, 4e-5, 0.1)
-        for case in range(4)
-    ]
-    with console.capture() as captured:
-        tell_curves(curves_of(rows, [("eils", 0.1)], 0))
-    shown = captured.get()
-    for word in ("3000", "eils", "0.1", "0.0000400", "99.975"):  # three times 99.9667 %, and all
-        assert re.search(rf"(^|[\s\[]){re.escape(word)}($|[\s,\]])", shown, re.MULTILINE), word
-    if width < 53:
-        assert "\ntasks 3000, method eils, budget 0.1," in shown
-
-
-def test_names_at_the_end_of_lines_do_not_overlap() -> None:
-    methods = [f"m{index}" for index in range(6)]
-    rows = [row(0, name, budget, 50 + int(budget), budget) for name in methods for budget in (1.0, 10.0)]
-    (axes,) = draw_curves(curves_of(rows, [(name, b) for name in methods for b in (1.0, 10.0)], seed=0)).axes
-    heights = sorted(text.get_position()[1] for text in axes.texts)
-    low, high = axes.get_ylim()
-    assert min(b - a for a, b in pairwise(heights)) >= 0.04 * (high - low)
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["ils", "nearest, no budget"]
 
 
 def test_every_so_many_cases_of_each_size() -> None:
@@ -95,7 +65,8 @@ def test_the_command_draws_and_resumes(tmp_path: Path) -> None:
     flags = ["converge", "--cases", cases, "--methods", "capam-plus", "--points", "nearest", "--out", str(out)]
     assert main([*flags, "--budgets", "0.01,0.05"]) == 0
     assert {path.name for path in out.glob("[!.]*")} == {
-        "manifest.json", "rows.csv", "sessions.csv", "curves.csv", "curves.png", "curves.svg",
+        "manifest.json", "rows.csv", "sessions.csv", "report.md", "report.html", "curves.csv", "curves.png",
+        "curves.svg",
     }  # fmt: skip
     whole = (out / "rows.csv").read_text()
     assert [line["budget"] for line in csv.DictReader(whole.splitlines())] == [""] * 5 + ["0.01"] * 5 + ["0.05"] * 5

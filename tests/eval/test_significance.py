@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 import pytest
-from scipy import stats
 
 from mrta_zoo.eval.significance import ALL_EQUAL, SAME_DIFFERENCE, TOO_FEW, estimate_mean, holm, paired_test
 
@@ -20,16 +19,7 @@ def test_paired_test_by_hand() -> None:
     assert found.effect == pytest.approx(3 / math.sqrt(2.5))
     assert found.t_p == pytest.approx(0.01324, abs=1e-5)
     assert found.wilcoxon_p == pytest.approx(0.0625)
-    assert (found.wins, found.losses, found.note) == (5, 0, "")
-
-
-def test_interval_of_the_effect_is_that_of_the_noncentral_t() -> None:
-    found = paired_test([11, 22, 33, 44, 55], [10, 20, 30, 40, 50], seed=0)
-    t = 3 / math.sqrt(2.5) * math.sqrt(5)
-    assert found.effect_low is not None
-    assert found.effect_high is not None
-    assert stats.nct.cdf(t, 4, found.effect_low * math.sqrt(5)) == pytest.approx(0.975, abs=1e-6)
-    assert stats.nct.cdf(t, 4, found.effect_high * math.sqrt(5)) == pytest.approx(0.025, abs=1e-6)
+    assert (found.wins, found.ties, found.losses, found.note) == (5, 0, 0, "")
 
 
 def test_turning_the_pair_round_turns_the_signs_round() -> None:
@@ -39,7 +29,6 @@ def test_turning_the_pair_round_turns_the_signs_round() -> None:
     assert there.t_p == pytest.approx(back.t_p)
     assert there.wilcoxon_p == pytest.approx(back.wilcoxon_p)
     assert there.effect == pytest.approx(-back.effect)  # type: ignore[operator]
-    assert there.effect_low == pytest.approx(-back.effect_high, abs=1e-5)  # type: ignore[operator]
     assert (there.wins, there.losses) == (back.losses, back.wins)
 
 
@@ -100,17 +89,10 @@ def test_nothing_is_ever_nan(seed: int) -> None:
     found = paired_test(one, other, seed=0, strata=rng.integers(0, 2, n).tolist())
     numbers = (
         found.difference.mean, found.difference.low, found.difference.high, found.t_p, found.wilcoxon_p,
-        found.effect, found.effect_low, found.effect_high,
+        found.effect,
     )  # fmt: skip
     assert all(value is None or math.isfinite(value) for value in numbers)
     assert (found.t_p is None) == bool(found.note)
-
-
-def test_a_huge_effect_has_no_interval() -> None:
-    one = 1e6 + np.arange(10.0)
-    found = paired_test(one + 1e-3 * np.arange(10), np.arange(10.0), seed=0)
-    assert found.effect is not None
-    assert (found.effect_low, found.effect_high) == (None, None)
 
 
 def test_holm_by_hand() -> None:

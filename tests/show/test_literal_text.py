@@ -52,7 +52,7 @@ def test_curves_show_runs_and_methods_as_they_are(name: str) -> None:
     assert {name, f"{name}: imitates plans", "b"} <= set(texts)
     line = {"tasks": 5, "method": name, "mean_percent": 50.0, "cases": 2}
     curves = pd.DataFrame([{**line, "budget": None, "mean_seconds": 0.1}, {**line, "budget": 1.0, "mean_seconds": 1.0}])
-    assert {name, f"{name},\nno budget"} <= set(shown(draw_curves(curves)))
+    assert {name, f"{name}, no budget"} <= set(shown(draw_curves(curves)))
 
 
 def test_tick_labels_are_literal() -> None:

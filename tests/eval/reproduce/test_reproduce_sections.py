@@ -9,10 +9,9 @@ import pytest
 from mrta_zoo.cli.main import main
 from mrta_zoo.eval.machine import Machine
 from mrta_zoo.eval.reproduce import experiment
-from mrta_zoo.eval.reproduce.all_pairs import all_pairs_table, compare_all
-from mrta_zoo.eval.reproduce.moments import moments_section
+from mrta_zoo.eval.reproduce.completion import completion_section
 from mrta_zoo.eval.reproduce.optimality import optimality_section
-from mrta_zoo.eval.reproduce.paired_tests import compare
+from mrta_zoo.eval.reproduce.paired_tests import compare, comparison_section
 from mrta_zoo.eval.reproduce.results import OptimalityRow, Results, frame_of
 from mrta_zoo.eval.reproduce.share import share_section
 from mrta_zoo.eval.reproduce.summary import summary
@@ -58,10 +57,10 @@ def test_verdicts() -> None:
             }
         )
     )
-    verdicts = {each.method: each.verdict for each in found}
+    verdicts = {each.second: each.verdict for each in found}
     assert verdicts == {
-        "worse": "reference better",
-        "better": "reference worse",
+        "worse": "capam better",
+        "better": "better better",
         "same": "all equal",
         "alike": "no significant difference",
         "shifted": "same difference in every case",
@@ -77,20 +76,26 @@ def test_the_summary_says_who_is_better_and_where_not() -> None:
     capam = [40, 41, 42, 43, 44, 45, 46, 47, 80, 82, 84, 86, 88, 90, 92, 94]
     other = [42, 43, 43, 45, 47, 47, 48, 49, 60, 63, 64, 65, 69, 70, 70, 75]
     made = results({"capam": capam, "other": other, "same": capam}, [2] * 8 + [7] * 8)
-    pairs = {100: compare_all(made, 100)}
     quiet = Machine("now", "a processor", 2, 1, "Linux", "Python 3", 0.1)
-    points = summary(made, compare(made), pairs, [quiet])
+    points = summary(made, compare(made), [quiet])
     # capam (348 + 696) / 16 = 65.25, other (364 + 536) / 16 = 56.25; difference 9.
     assert points[0].endswith("mean: capam 65.2 %, same 65.2 %, other 56.2 %.")
-    assert "significantly more, in percentage points, than other (by 9.0" in points[1]
-    assert "no significant difference from same (0.0, all equal)" in points[1]
-    assert "capam and same; all other differences are significant" in points[2]
-    # With 2 robots 42 - 40 and so on: -(2 + 2 + 1 + 2 + 3 + 2 + 2 + 2) / 8 = -2.
-    assert "against other, significantly fewer with 2 robots (by 2.0)" in points[3]
+    assert "same 0.0 [0.0, 0.0], not significant; other +9.0 [" in points[1]
+    assert points[1].endswith("], significant.")
     assert not any("Beware" in point for point in points)
     busy = Machine("now", "a processor", 2, 1, "Linux", "Python 3", 3.5)
-    assert "Beware: the machine was busy" in summary(made, compare(made), pairs, [busy])[-1]
-    table = all_pairs_table(made, 100, pairs[100])
+    assert "Beware: the machine was busy" in summary(made, compare(made), [busy])[-1]
+    # The higher means: 65.25 of all; of other, 364 / 8, with 2 robots; of the two with 7.
+    assert completion_section(made).tables[0].bold == {(0, 1), (2, 1), (1, 2), (0, 3), (2, 3)}
+    # One test over all cases (same has none), two by number of robots: the lesser p counts twice.
+    whole, *apart = [each for each in compare(made) if each.second == "other"]
+    assert whole.t_p == whole.test.t_p
+    assert min(each.t_p for each in apart) == pytest.approx(2 * min(each.test.t_p for each in apart))  # type: ignore[type-var, operator]
+    _, by_robots, table = comparison_section(made, compare(made)).tables
+    # With 2 robots 42 - 40 and so on: -(2 + 2 + 1 + 2 + 3 + 2 + 2 + 2) / 8 = -2.
+    assert by_robots.shown.loc[0, "2 robots"].startswith("−2.00 (p ")
+    assert by_robots.shown.loc[1, "7 robots"] == "0.00 (all equal)"
+    assert by_robots.bold == {(0, 1), (0, 2)}
     assert table.shown["other"].tolist() == ["+9.00", "–", "+9.00"]
     assert table.shown.loc[1, "same"] == "−9.00"
     assert table.bold == {(0, 2), (1, 1), (1, 3), (2, 2)}
@@ -103,8 +108,8 @@ def test_time_for_a_mission_and_for_a_decision() -> None:
     assert (first["mean"], first["fastest"], first["slowest"]) == pytest.approx((0.1, 0.08, 0.12))
     assert first["per_decision"] == pytest.approx(0.002)
     shown = timing_section(results({"capam": [40, 60], "none": [0, 0]}, [2, 2]), []).tables[0].shown
-    assert shown.iloc[0].tolist() == ["capam", "100 ms", "2 ms", "85 ms"]
-    assert shown.iloc[1].tolist()[2] == "–"
+    assert shown.iloc[0].tolist() == ["capam", "100 ms", "120 ms", "2 ms"]
+    assert shown.iloc[1].tolist()[3] == "–"
     assert second["fastest"] == 0.002
 
 
@@ -122,16 +127,6 @@ def test_share_of_the_reference_where_there_is_one() -> None:
     assert "1 case in which nobody completed any task are left out" in text
     whole = share_section(results({"capam": [40] * 8}, best_known={f"c{index}": 80 for index in range(8)}))
     assert whole.text == ("Best known is the best in the reference.csv that comes with the cases, for every case.",)
-
-
-def test_the_papers_table_stands_beside_ours() -> None:
-    section = moments_section(results({"capam": [30, 32, 34, 36, 38, 40]}, [2] * 6))
-    (line,) = section.tables[0].shown.to_dict("records")
-    assert line["capam"].startswith("35.0 [")
-    assert (line["paper: CapAM, P = 3"], line["paper: AM-RL"]) == ("34.6", "22.7")
-    assert "no like-for-like comparison" in " ".join(section.text)
-    assert "capam-p2 (CapAM, P = 2), capam-p1 (CapAM, P = 1) and am (AM-RL)" in section.text[0]
-    assert moments_section(results({"edf": [30] * 6}, [2] * 6)).tables == ()
 
 
 def test_the_gap_counts_where_the_optimum_is_proved() -> None:

@@ -8,8 +8,14 @@ import pytest
 from command_line import Captured, fails
 
 from mrta_zoo.errors import ConfigError
+from mrta_zoo.eval.manifest import Manifest
+from mrta_zoo.eval.plot_history import LearningCurve
+from mrta_zoo.eval.significance import TOO_FEW, Estimate
+from mrta_zoo.eval.studies.ablation import CLAIMS
 from mrta_zoo.eval.studies.design import choose
-from mrta_zoo.eval.studies.sharing.design import QUESTIONS
+from mrta_zoo.eval.studies.effects import Effect
+from mrta_zoo.eval.studies.sharing import QUESTIONS, USUAL, sharing
+from mrta_zoo.eval.studies.study import Answer, Study
 
 BOTH = ("ablate", "sharing")
 
@@ -46,3 +52,33 @@ def test_questions_by_name() -> None:
     assert [question.name for question in chosen] == ["episodes", "decisions"]
     with pytest.raises(ConfigError, match="there is no question"):
         choose(["other"], QUESTIONS)
+
+
+@pytest.mark.parametrize(
+    ("mean", "low", "high", "adjusted", "verdict"),
+    [
+        (3.0, 1.0, 5.0, 0.01, "supported"),
+        (3.0, 1.0, 5.0, 0.06, "undecided"),  # sure alone, not among three claims
+        (3.0, -1.0, 7.0, 0.2, "undecided"),
+        (-3.0, -5.0, -1.0, 0.01, "not supported"),  # the opposite is sure
+        (0.0, -0.9, 0.9, 0.9, "not supported"),  # at most 0.9 points, which is next to nothing
+        (0.5, 0.2, 0.8, 0.01, "supported"),  # little, but there
+        (3.0, None, None, None, "undecided"),  # one run
+    ],
+)
+def test_verdicts(mean: float, low: float | None, high: float | None, adjusted: float | None, verdict: str) -> None:
+    effect = Effect(difference=Estimate(mean, low, high, 4, "" if low is not None else TOO_FEW), adjusted_p=adjusted)
+    assert Answer(claim=CLAIMS[0], effect=effect).verdict == verdict
+
+
+def test_the_gain_of_training() -> None:
+    # 3.125 points, and 0 (the best counts, not the last): 1.5625 in the mean.
+    curves = {
+        ("capam", 0): LearningCurve("", (0, 8, 16), (0.25, 0.28125, 0.27)),
+        ("capam", 1): LearningCurve("", (0, 8, 16), (0.5, 0.49, 0.48)),
+        ("am", 0): LearningCurve("", (0, 8), (0.5, 0.6)),
+    }
+    design = sharing(["episodes"], 1, USUAL, 2)
+    manifest = Manifest(command="sharing", settings={}, cases="", weights={})
+    study = Study(design=design, manifest=manifest, machines=[], rows=[], curves=curves, folders={})
+    assert study.gain("capam") == pytest.approx(1.5625)

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from statistics import fmean
 
+import pandas as pd
 import torch
 from torch import Tensor
 
+from mrta_zoo.digits import share
+from mrta_zoo.eval.report.parts import Section, Table
 from mrta_zoo.eval.studies.study import Study
 from mrta_zoo.policies.neural.capam.inputs import Tasks
 from mrta_zoo.policies.neural.capam.network import AllocationNetwork
@@ -33,33 +35,11 @@ ACROSS, AGAIN = "networks of one run", "one network, runs of other seeds"
 """What is compared: what training has made of different robots, and what it makes of the same ones by chance."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Unlikeness:
-    """How differently pairs of networks choose.
+def unlikeness(study: Study) -> pd.DataFrame:
+    """Of every arm: its networks against each other, and each against itself trained with other seeds, see `compared`.
 
-    Attributes:
-        arm: they belong to.
-        pairs: `ACROSS` or `AGAIN`.
-        count: number of pairs.
-        decisions: that each network was asked about.
-        divergence: mean Jensen-Shannon divergence of the probabilities, in bits, 0 to 1.
-        least: of the pair that is most alike.
-        most: of the pair that is least alike.
-        disagreement: share of the decisions where the likeliest tasks differ, 0 to 1.
+    There is no row for what has no pairs, and none at all where there never was a choice.
     """
-
-    arm: str
-    pairs: str
-    count: int
-    decisions: int
-    divergence: float
-    least: float
-    most: float
-    disagreement: float
-
-
-def unlikeness(study: Study) -> list[Unlikeness]:
-    """Of every arm: its networks against each other, and each against itself trained with other seeds."""
     scenarios = [
         scenario
         for robots in study.design.compared
@@ -74,10 +54,12 @@ def unlikeness(study: Study) -> list[Unlikeness]:
         ]
         across = [pair for of_run in answers for pair in combinations(of_run, 2)]
         again = [pair for of_network in zip(*answers, strict=True) for pair in combinations(of_network, 2)]
-        for name, pairs in ((ACROSS, across), (AGAIN, again)):
-            if pairs and len(pairs[0][0]):  # with a task a mission there never was a choice
-                found.append(compared(arm, name, pairs))
-    return found
+        found += [
+            {"arm": arm, "compared": name, **compared(pairs)}
+            for name, pairs in ((ACROSS, across), (AGAIN, again))
+            if pairs and len(pairs[0][0])  # with one task per mission there never was a choice
+        ]
+    return pd.DataFrame(found)
 
 
 def members(network: Network) -> Sequence[AllocationNetwork]:
@@ -85,19 +67,23 @@ def members(network: Network) -> Sequence[AllocationNetwork]:
     return network.networks if isinstance(network, SeveralNetworks) else (network,)
 
 
-def compared(arm: str, name: str, pairs: Sequence[tuple[Tensor, Tensor]]) -> Unlikeness:
-    """Summary of pairs of (D, N) probabilities."""
+def compared(pairs: Sequence[tuple[Tensor, Tensor]]) -> dict[str, float]:
+    """How differently pairs of networks choose, from (D, N) probabilities.
+
+    Returns:
+        The number of pairs; D, the decisions that each network was asked about; the Jensen-Shannon divergence in bits,
+        0 to 1, mean over pairs, and that of the most and the least alike; the share of the decisions where the
+        likeliest tasks differ, 0 to 1.
+    """
     each = [float(divergence(one, other).mean()) for one, other in pairs]
-    return Unlikeness(
-        arm=arm,
-        pairs=name,
-        count=len(pairs),
-        decisions=len(pairs[0][0]),
-        divergence=fmean(each),
-        least=min(each),
-        most=max(each),
-        disagreement=fmean(float((one.argmax(-1) != other.argmax(-1)).float().mean()) for one, other in pairs),
-    )
+    return {
+        "pairs": len(pairs),
+        "decisions": len(pairs[0][0]),
+        "divergence_bits": fmean(each),
+        "least": min(each),
+        "most": max(each),
+        "disagreement": fmean(float((one.argmax(-1) != other.argmax(-1)).float().mean()) for one, other in pairs),
+    }
 
 
 def divergence(one: Tensor, other: Tensor) -> Tensor:
@@ -109,6 +95,36 @@ def entropy(probabilities: Tensor) -> Tensor:
     """(D,) entropy in bits of (D, N) probabilities."""
     bits: Tensor = torch.special.entr(probabilities).sum(-1) / math.log(2)
     return bits
+
+
+def choices_section(found: pd.DataFrame) -> list[Section]:
+    """A section on what `unlikeness` has found, if there is anything."""
+    if found.empty:
+        return []
+    shown = pd.DataFrame(
+        {
+            "arm": found["arm"],
+            "compared": found["compared"],
+            "pairs": found["pairs"],
+            "divergence, bits": found["divergence_bits"].map("{:.3f}".format),
+            "least": found["least"].map("{:.3f}".format),
+            "most": found["most"].map("{:.3f}".format),
+            "other likeliest task, %": found["disagreement"].map(share),
+        }
+    )
+    caption = (
+        f"Jensen-Shannon divergence of two networks’ probabilities, 0 to 1 bit, mean over {found['decisions'][0]:,} "
+        "decisions and over pairs, that of the most and the least alike pair, and how often their likeliest tasks "
+        "differ. All networks were asked about the same moments, of missions that the nearest-feasible rule drives "
+        f"through the first {SCENARIOS} held-out scenarios of each number of robots, if at least two tasks could be "
+        "chosen."
+    )
+    text = (
+        "If two robots trained together differ no more than one robot does from itself when trained with another seed, "
+        "what sets them apart is chance, and no role that they have found.",
+    )
+    table = Table(name="choices", caption=caption, shown=shown, data=found)
+    return [Section(title="How differently they choose", text=text, tables=(table,))]
 
 
 class Questionnaire:
