@@ -3,7 +3,7 @@
 # ruff: noqa: E402
 from mrta_zoo.program import end_in_a_sentence
 
-end_in_a_sentence()  # before all that takes long to import
+end_in_a_sentence()  # before the slow imports
 
 from pathlib import Path
 
@@ -18,7 +18,7 @@ __version__ = "0.1.0"
 register()
 attach()
 
-# In a checkout, from which Python imports when it is started there, policies, train and eval lie beside this folder.
+# In a checkout, which Python imports from when started there, policies, train and eval lie beside this folder.
 _checkout = Path(__file__).parent.parent
 if not (_checkout / "mrta_zoo" / "policies").exists() and (_checkout / "policies" / "pretrained").is_dir():
     __path__.append(str(_checkout))

@@ -1,6 +1,6 @@
-"""What agents send: the index of a task to take or, where a form of the environment has it, the no-op.
+"""Actions: the index of a task to take or, in the forms of the environment that have it, the no-op.
 
-The no-op is the action after the last task, ``max_tasks``. It is all that a robot may choose that is not to choose.
+The no-op is the action after the last task, ``max_tasks``. It takes no task.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ def noop(max_tasks: int) -> int:
 
 
 def split_mask(mask: Mask, max_tasks: int) -> tuple[Mask, Mask]:
-    """What a mask, or more of them, says of the tasks, and what of the no-op.
+    """Split one or more masks into the part for the tasks and the part for the no-op.
 
     Args:
-        mask: (..., max_tasks) or, in a form that has a no-op, (..., max_tasks + 1); a NumPy array or a tensor.
+        mask: (..., max_tasks) or, with a no-op, (..., max_tasks + 1); a NumPy array or a tensor.
         max_tasks: the environment's number of task rows.
 
     Returns:
-        (..., max_tasks), and (..., 1) or, in a form that has no no-op, (..., 0); both are views.
+        Two views: (..., max_tasks), and (..., 1) or, without a no-op, (..., 0).
     """
     return mask[..., :max_tasks], mask[..., max_tasks:]
 
@@ -38,7 +38,7 @@ def as_action(agent: str, action: Any, num_actions: int) -> int:
     """An action as a Python integer from 0 to ``num_actions - 1``.
 
     Raises:
-        OutOfBoundsError: if it is none.
+        OutOfBoundsError: if it is not one.
     """
     try:
         number = operator.index(action)
@@ -50,5 +50,5 @@ def as_action(agent: str, action: Any, num_actions: int) -> int:
 
 
 def next_legal(mask: npt.NDArray[Any], action: int) -> int:
-    """The first action that the mask allows, from `action` on and then from 0."""
+    """The first action that the mask allows, searching upwards from `action` and then from 0."""
     return int(np.roll(mask, -action).argmax() + action) % len(mask)

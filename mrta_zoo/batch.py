@@ -1,7 +1,7 @@
-"""Thousands of missions at once on torch tensors: the dynamics of `mission`, for training and evaluation.
+"""The batched simulator: the dynamics of `mission` for thousands of missions at once, on torch tensors.
 
-Needs the `torch` extra. The rules are those of `rules`; `tests/property` holds this simulator and `mission`
-equal, decision by decision.
+Needs the `torch` extra. The rules are those of `rules`; `tests/property` checks that this simulator and `mission`
+agree, decision by decision.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from mrta_zoo.scenario_batch import ScenarioBatch
 
 
 class BatchMission:
-    """B missions under way, one decision of each at a time. Mutable: `step` changes it in place.
+    """B missions under way, each advanced by one decision per `step`, which changes them in place.
 
     Attributes:
         scenarios: the scenarios.
@@ -28,10 +28,10 @@ class BatchMission:
         position: (B, M, 2) float64 where each robot is, or is heading for.
         retired: (B, M) bool; padding counts as retired.
         untaken: (B, N) bool; padding counts as taken.
-        finish: (B, N) float64 finish of each taken task, infinite for the others.
+        finish: (B, N) float64 when each taken task is finished, infinite for the others.
         taken_by: (B, N) int64 robot that took each task, or -1.
-        order: (B, N) int64 how many steps of the batch came before a task was taken, or -1.
-        finish_if: (B, M, N) float64 when each robot would finish each task, were it its next.
+        order: (B, N) int64 the step of the batch, counted from 0, that took each task, or -1.
+        finish_if: (B, M, N) float64 when each robot would finish each task if it took it next.
     """
 
     def __init__(self, scenarios: ScenarioBatch, mask_rule: MaskRule = "feasible") -> None:
@@ -91,9 +91,9 @@ class BatchMission:
         self._advance()
 
     def retire(self, where: Tensor) -> None:
-        """Let the acting robot retire, whatever it could choose, in the missions marked in (B,) bool.
+        """Retire the acting robot, whatever it could choose, in the missions marked in `where`, (B,) bool.
 
-        No policy may do so; plans that end before the choices do can be followed this way.
+        No policy may do this; it is for following plans whose routes end while there is still something to choose.
         """
         robot = self.actor.clamp(min=0)
         self._allowed[self._rows, robot] &= ~where[:, None]
@@ -119,7 +119,7 @@ class BatchMission:
         return (self.finish <= self.scenarios.deadline).sum(1)
 
     def plans(self, names: Sequence[str] | None = None, method: str = "") -> list[Plan]:
-        """The routes taken so far, one plan a mission."""
+        """The routes taken so far, one plan per mission."""
         taken_by, order = self.taken_by.cpu().numpy(), self.order.cpu().numpy().argsort(1)
         plans = []
         for b, m in enumerate(self.scenarios.robot_exists.sum(1).tolist()):
@@ -134,10 +134,10 @@ class BatchMission:
         """(B, R, N) when R robots of each mission would finish each task, and whether the rule allows them to take it.
 
         Args:
-            place: (B, R, 2) where each is free next.
-            ready: (B, R) when that is.
-            speed: (B, R) of each.
-            capacity: (B, R) of each.
+            place: (B, R, 2) where each is next free.
+            ready: (B, R) when each is next free.
+            speed: (B, R) speed of each.
+            capacity: (B, R) capacity of each.
         """
         s, ready = self.scenarios, ready[..., None]
         offset = s.task_xy[:, None] - place[:, :, None]
@@ -161,7 +161,7 @@ class BatchMission:
 
 
 def _sqrt(square: Tensor) -> Tensor:
-    """The correctly rounded square root, as IEEE 754 asks and as CUDA, NumPy and Python compute it.
+    """The correctly rounded square root, as IEEE 754 requires and as CUDA, NumPy and Python compute it.
 
     On the CPU `torch.sqrt` is one bit off in about 1 % of values, enough to tip a tie with a deadline.
     """

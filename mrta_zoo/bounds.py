@@ -1,4 +1,4 @@
-"""Numbers and ranges of numbers that options are made of, checked with a sentence about what would be right."""
+"""Checks of options that are numbers or ranges of numbers."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ import numpy as np
 from mrta_zoo.errors import ConfigError
 
 MOST = 1_000_000
-"""Tasks or robots of a drawn scenario; more would take memory without end before anything is seen to be wrong."""
+"""The most tasks or robots of a drawn scenario; more would exhaust memory before the mistake is noticed."""
 
 MAX_SEED = 2**63 - 1
-"""The greatest seed that every random generator in use takes."""
+"""The largest seed that every random generator in use accepts."""
 
 MAX_THREADS = 1024
-"""More than any machine has use for; torch fails with as many threads as the system cannot start."""
+"""More than any machine can use; torch fails if asked for more threads than the system can start."""
 
 
 def is_number(value: object) -> bool:
-    """Whether it is a finite number; True and False are none."""
+    """Whether a value is a finite number; True and False are not."""
     if not isinstance(value, (int, float, np.integer, np.floating)) or isinstance(value, bool):
         return False
     try:
         return math.isfinite(value)
-    except OverflowError:  # an integer beyond the greatest float
+    except OverflowError:  # an integer larger than any float
         return False
 
 
 def as_finite(field: str, value: Any) -> float:
-    """An option that is a finite number.
+    """The value of an option that must be a finite number.
 
     Raises:
         ConfigError: if it is not.

@@ -5,7 +5,7 @@ class MrtaError(ValueError):
     """Base of every error this package raises about its input. The command line prints it without a traceback."""
 
     def __str__(self) -> str:
-        # A name of a file that is not UTF-8 could not be printed.
+        # A file name that is not UTF-8 could not be printed.
         return super().__str__().encode(errors="backslashreplace").decode()
 
 
@@ -30,4 +30,4 @@ class ConfigError(MrtaError):
 
 
 class MissingExtraError(MrtaError, ImportError):
-    """An optional dependency is needed and absent; the message names the extra that brings it."""
+    """An optional dependency is needed but missing; the message names the extra that installs it."""

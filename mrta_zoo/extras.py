@@ -1,4 +1,4 @@
-"""Optional dependencies: what is missing or broken, and which extra of the package brings it."""
+"""Optional dependencies: which are missing or broken, and which extra of the package installs them."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ EXTRAS: dict[str, tuple[str, ...]] = {
     "pyvrp": ("pyvrp",),
     "report": ("filelock", "scipy", "statsmodels", "pandas", "jinja2", "matplotlib"),
 }
-"""Each extra with the modules it brings, in so far as we import them."""
+"""The modules that we import from each extra."""
 BACKEND = "MPLBACKEND"
-"""Of the environment: what matplotlib opens windows with."""
+"""The environment variable that names matplotlib's backend."""
 
 
 def require(extra: str, what: str, also: Sequence[str] = ()) -> None:
-    """Make sure that an extra is installed, and that what it brings can be imported.
+    """Make sure that an extra is installed and that its modules can be imported.
 
     Args:
         extra: one of `EXTRAS`.
@@ -54,7 +54,7 @@ def require(extra: str, what: str, also: Sequence[str] = ()) -> None:
 
 @contextmanager
 def importing(extra: str, what: str) -> Iterator[None]:
-    """Within it what an extra brings is imported: matplotlib also where `MPLBACKEND` names no backend that it knows.
+    """Context in which to import the modules of an extra; matplotlib even if `MPLBACKEND` names an unknown backend.
 
     Args:
         extra: one of `EXTRAS`.
@@ -71,7 +71,7 @@ def _import(module: str) -> None:
     if module != "matplotlib" or module in sys.modules:
         import_module(module)
         return
-    # It fails where the environment names a backend that it does not know. We open no windows, and need none.
+    # It fails if the environment names a backend that it does not know. We open no windows and need none.
     backend = os.environ.pop(BACKEND, None)
     try:
         matplotlib = import_module(module)

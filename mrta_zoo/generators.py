@@ -109,7 +109,7 @@ CapacityRule = Literal["half", "random"]
 class TaptcGenerator:
     """Scenarios like the published TAPTC cases (Mitiche, Boughaci, Gini 2019), fitted to those files.
 
-    The latest deadline D is drawn once a scenario. A share of the tasks has deadlines drawn from a normal
+    The latest deadline D is drawn once per scenario. A share of the tasks has deadlines drawn from a normal
     distribution with mean (low + D) / 2 and standard deviation (D - low) / spread, redrawn while outside
     [min_deadline, D]; all other tasks have deadline D. In the slack group D is twice what the tight group
     draws, and the same formula then gives its other deadlines.

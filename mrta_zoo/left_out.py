@@ -1,4 +1,4 @@
-"""What a plan leaves out, and why: no robot could have done it in time, or others were worth more."""
+"""The tasks that a plan leaves out, and why: no robot could have done them in time, or others were worth more."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The map of a mission: how large it is, and where it begins if nobody says."""
+"""The map of a mission: its size and origin, and what they are by default."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from mrta_zoo.quantities import BOUNDS, LARGEST, SMALLEST, FloatArray
 Pair = tuple[float, float]
 
 UNSAID: Pair = (math.nan, math.nan)
-"""A map's size or origin that follows from the places on it."""
+"""Stands for a map's size or origin that is not given but follows from the places on it."""
 DEFAULT_SIZE: Pair = (100.0, 100.0)
 
 
 def map_around(places: FloatArray, size: Any, origin: Any) -> tuple[Pair, Pair]:
-    """Size and origin of the map, as they are said or, if they are `UNSAID`, as they follow from the places.
+    """Size and origin of the map, as given or, if `UNSAID`, as they follow from the places.
 
     Args:
         places: (P, 2) at least one place.
@@ -26,7 +26,7 @@ def map_around(places: FloatArray, size: Any, origin: Any) -> tuple[Pair, Pair]:
         origin: the map's lowest x and y.
 
     Raises:
-        ScenarioError: if something else than two numbers in range is said.
+        ScenarioError: if one is given that is not two numbers in range.
     """
     if _is_unsaid(size):
         size = DEFAULT_SIZE
@@ -41,10 +41,10 @@ def map_around(places: FloatArray, size: Any, origin: Any) -> tuple[Pair, Pair]:
 
 
 def map_origin_for(places: FloatArray, map_size: Pair) -> Pair:
-    """Where a map lies that says only how large it is.
+    """The origin of a map of which only the size is given.
 
-    At 0 and 0 or, if some coordinate is negative or no place lies on the map then, as in surveys, at the least whole
-    x and y of all places, provided that it holds every place there.
+    It is (0, 0). But if a coordinate is negative, or no place would lie on the map, as with survey coordinates, it is
+    the smallest whole x and y of all places, provided that the map then holds every place.
 
     Args:
         places: (P, 2) at least one place.
@@ -59,10 +59,10 @@ def map_origin_for(places: FloatArray, map_size: Pair) -> Pair:
 
 
 def square_around(places: FloatArray) -> tuple[Pair, Pair]:
-    """Size and origin of the map of a mission that names none.
+    """Size and origin of the map of a mission that gives neither.
 
-    The smallest square with a whole side >= 1 that holds every place from 0 and 0 on; or from their least whole x and y
-    on, if one is negative, or that square would be more than twice as large.
+    It is the smallest square with a whole side >= 1 and its corner at (0, 0) that holds every place. If a coordinate is
+    negative, or that square would be more than twice as wide, the corner is at their smallest whole x and y instead.
 
     Args:
         places: (P, 2) at least one place.

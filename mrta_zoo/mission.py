@@ -1,4 +1,4 @@
-"""The dynamics of one mission: who acts next, what it may choose, what its choice leads to."""
+"""The dynamics of one mission: which robot acts next, what it may choose, and what follows from its choice."""
 
 from __future__ import annotations
 
@@ -58,14 +58,14 @@ class Mission:
         ready: M floats, when each robot is (or will be) free.
         position: (M, 2) where each robot is, or is heading for.
         routes: for each robot the tasks it has taken, in order.
-        heading: for each robot the task it is on, or -1 if it has none under way.
+        heading: for each robot the task it is heading for or working on, or -1.
         retired: for each robot whether it was free and found nothing left to choose, or stayed.
         taken_by: (N,) the robot that took each task, or -1.
         finish: (N,) when each taken task is finished; infinite for the others.
         status: (N,) int8 `rules.Status` of each task at `time`.
-        finish_if: (M, N) when each robot would finish each task, were it its next.
-        reasons: (M, N) int8 `rules.MaskReason`: why each robot may not choose each task when it is next free, or that
-            it may, as far as is known now.
+        finish_if: (M, N) when each robot would finish each task if it took it next.
+        reasons: (M, N) int8 `rules.MaskReason`: whether each robot may choose each task when it is next free, and why
+            not, as far as is known now.
     """
 
     def __init__(self, scenario: Scenario, mask_rule: MaskRule = "feasible") -> None:
@@ -105,13 +105,13 @@ class Mission:
         return mask
 
     def known(self, robot: int) -> Mission:
-        """The mission as far as `robot` knows it, which is all of it; observations and advice are made from this."""
+        """The mission as `robot` knows it, today all of it; observations and advice are made from this."""
         return self
 
     def free(self) -> list[int]:
         """The robots that are free now and have something to choose, in index order.
 
-        Not one that took a task since the last `advance`, even if the task needs no time.
+        A robot that took a task since the last `advance` is not among them, even if the task needs no time.
         """
         return [
             robot
@@ -252,7 +252,7 @@ class Mission:
             )
 
 
-# Of lists, which are faster than arrays while there are few robots.
+# For lists, which are faster than arrays while there are few robots.
 def _where(condition: list[bool], value: float, others: list[float]) -> list[float]:
     return [value if holds else other for holds, other in zip(condition, others, strict=True)]
 

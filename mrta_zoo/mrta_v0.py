@@ -41,7 +41,7 @@ The index of the task to take. Tasks at or above the scenario's number of tasks 
 Mask
 ----
 ``action_mask`` is (max_tasks,) int8, 1 where the agent may choose; never all 0 for the agent that is to act. For the
-others it tells what they may choose when they are next free, as far as is known now: nothing, all 0, if they are
+others it tells what they may choose when they are next free, as far as is known now; it is all 0 if they are
 retired. (In the parallel form and in the Gymnasium environment no mask is ever all 0.) ``mask_rule`` says which of the
 tasks not yet taken may be chosen:
 
@@ -56,24 +56,24 @@ reward is `illegal_reward`, the others' is 0. One outside the action space raise
 Observations
 ------------
 ``{"observation": {"tasks", "robots", "ego", "mission"}, "action_mask"}``; `mrta_zoo.env.observation` lists the columns.
-With ``observation="masked"`` it is ``{"observation", "action_mask"}`` with one vector, the same tables one after
-another (`observation.split` takes it apart again); with ``observation="flat"`` the vector alone, and the mask is in
-``infos[agent]["action_mask"]``. `observe` answers for every possible agent at any time; one
-that the scenario does not have sees an ``ego`` of zeros and an empty mask. `state()` is the vector of tasks, robots and
-mission without what belongs to one observer; its size is ``8 max_tasks + 6 max_robots + 3``.
+With ``observation="masked"`` it is ``{"observation", "action_mask"}`` with one vector, the same tables concatenated
+(`observation.split` separates them again); with ``observation="flat"`` it is the vector alone, and the mask is in
+``infos[agent]["action_mask"]``. `observe` answers for every possible agent at any time; an agent without a robot in the
+scenario sees an ``ego`` of zeros and an all-zero mask. `state()` is the vector of tasks, robots and mission without
+what belongs to one observer; its size is ``8 max_tasks + 6 max_robots + 3``.
 
 What is handed out
 ------------------
 Observations, masks, states and infos are the caller's: strike out entries, pop keys, write over them. Whether an action
 is legal is judged by the environment's own state, never by these. As everywhere in PettingZoo, ``env.infos``,
-``env.rewards`` and the like are the environment's books, to which `last` points: what is written into them shows there
-until the next step. ``env.unwrapped.mission`` is the mission itself, live: read it, but do not write to it.
+``env.rewards`` and the like are the environment's own, and `last` reads from them: what you write into them shows
+there until the next step. ``env.unwrapped.mission`` is the mission itself, live: read it, but do not write to it.
 
 Rewards
 -------
 - ``"terminal"`` (default): −cost/N to every agent when the mission ends, with the cost of Eq. 1 of the paper;
-- ``"completion"``: 1/N to every agent as each task is completed; sums up to the completion rate;
-- ``"individual"``: 1/N to the robot that completed the task; sums up, over all agents, to the completion rate;
+- ``"completion"``: 1/N to every agent as each task is completed; adds up to the completion rate;
+- ``"individual"``: 1/N to the robot that completed the task; adds up, over all agents, to the completion rate;
 - a function ``(mission, finished) -> [a number for each robot]``, see `mrta_zoo.env.rewards`.
 
 A task counts when the clock passes its finish, not when it is chosen.
@@ -81,8 +81,8 @@ A task counts when the clock passes its finish, not when it is chosen.
 Termination
 -----------
 All agents terminate together when the mission ends. With ``staggered=True`` each terminates as soon as it retires;
-team rewards then reach only those still there, so that ``"individual"`` is the reward to go with it. Where no robot
-can do anything at the start, all terminate right at the reset, with the reward of a mission that has ended. Nothing
+team rewards then reach only those still there, so ``"individual"`` is the reward to use with it. If no robot can do
+anything at the start, all terminate right at the reset, with the reward of a mission that has ended. Nothing
 is ever truncated, except by the wrapper after an illegal action.
 
 Infos
@@ -102,27 +102,28 @@ Arguments
 ``help(mrta_v0.env)`` lists them, `mrta_zoo.env.settings.Settings` says what they mean.
 
 `reset(seed=…, options={"scenario": scenario})` plays the given scenario; without it the environment's own, or one drawn
-from its generator. The same seed gives the same episode; without a seed the random generator goes on where it was.
+from its generator. The same seed gives the same episode; without a seed the random generator carries on from where it
+was.
 
 Parallel form
 -------------
 `parallel_env(…)` takes the same arguments and ``on_illegal="terminate"``, ``"raise"`` or ``"replace"``; see
-`mrta_zoo.env.parallel`. It is an implementation of its own because PettingZoo's conversion asks for agents that take
-cyclic turns.
+`mrta_zoo.env.parallel`. It is a separate implementation because PettingZoo's conversion needs agents that take turns
+in cycles.
 
 Other forms
 -----------
-`mrta_zoo.env.gym_view.ActingRobotEnv` is a Gymnasium environment, in which one agent acts for each robot in its turn,
-also by ``gymnasium.make("mrta_zoo/mrta-v0")``; `mrta_zoo.env.dead_steps.SkipDeadSteps` a wrapper that steps for agents
-that have terminated.
+`mrta_zoo.env.gym_view.ActingRobotEnv` is a Gymnasium environment in which one agent acts for each robot in its turn;
+``gymnasium.make("mrta_zoo/mrta-v0")`` makes it, too. `mrta_zoo.env.dead_steps.SkipDeadSteps` is a wrapper that steps
+for agents that have terminated.
 
 Rendering
 ---------
 ``"ansi"``: text. ``"rgb_array"``: a (720, 1040, 3) uint8 picture: the map with tasks by status and time left, the
 robots where they are at this moment with their trails, dashed lines to where they are heading, and what each does.
-``"human"``: the same in a window, after the reset and each step; `close` closes it, and if its user does, the episode
-goes on without. Both need ``mrta_zoo[render]`` (pygame), the window a display, too. PettingZoo's ``RecordVideo`` makes
-videos of ``"rgb_array"`` (with ``mrta_zoo[video]``).
+``"human"``: the same in a window, after the reset and each step; `close` closes it, and if the user does, the episode
+goes on without it. Both need ``mrta_zoo[render]`` (pygame), and the window needs a display. PettingZoo's
+``RecordVideo`` makes videos of ``"rgb_array"`` (with ``mrta_zoo[video]``).
 
 Version history
 ---------------

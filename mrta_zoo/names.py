@@ -1,4 +1,4 @@
-"""What people call tasks and robots."""
+"""Names of tasks and robots: which are valid, and how they are normalised."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.wording import composed, counted
 
-# Besides what steers terminals, what turns round all that follows, in browsers, too.
+# Control characters, and those that reverse the direction of the text after them, in browsers, too.
 _UNPRINTABLE = re.compile("[\x00-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 
 
@@ -23,10 +23,11 @@ def usable_name(name: object) -> str:
 
 
 def as_names(names: Iterable[object], who: str, count: int) -> tuple[str, ...]:
-    """Names of `count` tasks or robots as text, numbers being names, too; none if they are the numbers from 0 on.
+    """Names of `count` tasks or robots as text, made from text or whole numbers; none if they are just 0, 1, 2, ….
 
     Raises:
-        ScenarioError: if they are not as many, not texts, empty, not all different, or hold control characters.
+        ScenarioError: if there are more or fewer, or one is not text, is empty, appears twice or holds control
+            characters.
     """
     expected = f"a different text for each of the {count} {who}s, or nothing"
     if isinstance(names, (str, bytes)) or not isinstance(names, Iterable):

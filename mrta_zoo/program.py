@@ -1,4 +1,4 @@
-"""How our programs end where Python would show a traceback: after Ctrl-C, and after an error meant for people."""
+"""One line instead of a traceback when a program of ours ends by Ctrl-C or by an error meant for people."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ SCRIPT, PACKAGE = "mrta-zoo", __name__.partition(".")[0]
 def end_in_a_sentence() -> None:
     """Replace tracebacks by one line, if Python was started for a program of ours.
 
-    ``mrta-zoo`` needs this only while it imports. Modules that are run by ``python -m`` need it throughout. Programs of
-    others that import us keep their tracebacks.
+    ``mrta-zoo`` needs this only while it imports. Modules that are run by ``python -m`` need it throughout. Other
+    people's programs that import us keep their tracebacks.
     """
     if _is_ours([*sys.argv, ""][0], sys.orig_argv):
         sys.excepthook = _tell
 
 
 def _is_ours(script: str, started: list[str]) -> bool:
-    """Whether that was ``mrta-zoo …`` or ``python -m mrta_zoo…``."""
+    """Whether Python was started as ``mrta-zoo …`` or ``python -m mrta_zoo…``."""
     if Path(script).stem == SCRIPT:
         return True
     module = started[started.index("-m") + 1] if "-m" in started[:-1] else ""

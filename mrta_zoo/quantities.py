@@ -1,4 +1,4 @@
-"""What a row of the field table says: a number that every task, or every robot, has."""
+"""Quantities: the numbers that every task, or every robot, of a scenario has; rows of the field table."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ FloatArray = npt.NDArray[np.float64]
 Who = Literal["task", "robot"]
 
 SMALLEST, LARGEST = 1e-12, 1e12
-"""What a positive number may be: times and distances made of such numbers neither overflow nor vanish."""
+"""The range of positive numbers: times and distances computed from them neither overflow nor vanish."""
 BOUNDS = f", from {SMALLEST:g} to {LARGEST:g}"
 COORDINATE = f"a number from {-LARGEST:g} to {LARGEST:g}"
 
@@ -23,14 +23,14 @@ COORDINATE = f"a number from {-LARGEST:g} to {LARGEST:g}"
 class Quantity:
     """A number that every task, or every robot, of a scenario has.
 
-    Validation, files, batches, digests and notebooks go through these, so that a new one is a line in `Scenario`.
+    Validation, files, batches, digests and notebooks are derived from these, so that a new one is a line in `Scenario`.
 
     Attributes:
         who: who has it.
         unit: its unit; units are free but must agree.
         positive: whether it must be > 0, and so from `SMALLEST` to `LARGEST`; otherwise it is from 0 to `LARGEST`.
-        default: what it is where nothing is said; None if something must be said. Where it is 0 for everyone and 0 is
-            the default, files and digests leave it out.
+        default: its value where none is given; None if one must be given. A quantity whose default is 0, and which is 0
+            for everyone, is left out of files and digests.
         name: the attribute of `Scenario`, the field or column in files, and the word in messages.
     """
 
@@ -42,12 +42,12 @@ class Quantity:
 
     @property
     def expected(self) -> str:
-        """What it must be, for messages."""
+        """What its values must be, for messages."""
         return f"a number > 0{BOUNDS}" if self.positive else f"a number from 0 to {LARGEST:g}"
 
     @property
     def padding(self) -> float:
-        """What stands in a batch where there is no task or robot."""
+        """Its value in a batch where there is no task or robot."""
         return 1.0 if self.positive else 0.0
 
     def allows(self, values: npt.ArrayLike) -> npt.NDArray[np.bool_]:
@@ -88,7 +88,7 @@ class RowError(ScenarioError):
     Attributes:
         who: whose number it is.
         index: which of them.
-        complaint: what is wrong, for those who say for themselves where: "deadline is 0.0; expected a number > 0".
+        complaint: what is wrong, without saying where: "deadline is 0.0; expected a number > 0".
     """
 
     who: Who

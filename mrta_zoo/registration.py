@@ -1,4 +1,4 @@
-"""Enters the environments into the registries of Gymnasium and, where it has one (1.27 and later), PettingZoo."""
+"""Registration of the environments with Gymnasium and, where it has a registry (1.27 and later), PettingZoo."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ GYMNASIUM = "mrta_zoo.env.gym_view:ActingRobotEnv"
 
 
 def register() -> None:
-    """Register what is not registered yet: doing it twice would warn. Entry points are imported when made."""
+    """Register what is not registered yet: registering twice would warn. Environments are imported when made."""
     try:
         import gymnasium
         import pettingzoo

@@ -1,7 +1,7 @@
 """The rules of the problem as formulas, written once for NumPy arrays and for torch tensors.
 
 Everything that decides *when* a robot finishes, *what* it may choose and *what it costs* is here; `mission`
-(one scenario, readable) and `batch` (thousands at once) only keep the books. All arithmetic is in float64 and in
+(one scenario, readable) and `batch` (thousands at once) only keep the state. All arithmetic is in float64 and in
 the order written here, so that both give the same bits; `verify` states the rules a second time, on purpose.
 """
 
@@ -59,7 +59,7 @@ MASK_RULES: dict[MaskRule, MaskFormula] = {
         lambda finish, ready, deadline: finish == finish, "all of them, even if late (the paper's rule, §II-B)"
     ),
 }
-"""Every mask rule, the tightest first: what one allows, those after it allow, too. To add one, add its name to
+"""Every mask rule, the tightest first: what one allows, the later ones allow, too. To add one, add its name to
 `MaskRule` and its line here."""
 
 
@@ -95,7 +95,7 @@ def travel_time(dx: Any, dy: Any, speed: Any, sqrt: Callable[[Any], Any]) -> Any
 
 
 def visit(ready: Any, travel: Any, work: Any) -> VisitTimes:
-    """When a robot that is free at `ready` does a task: first the way, then the work, without delay.
+    """When a robot that is free at `ready` does a task: it travels, then works, without delay.
 
     Args:
         ready: when the robot is free.
@@ -119,7 +119,7 @@ def next_event(
         least: the least of each row and its first index.
 
     Returns:
-        (...) times, infinite where all are out, and (...) indices, which mean nothing there.
+        (...) times, infinite where all are out, and (...) indices, meaningless there.
     """
     return least(where(out, math.inf, ready))
 
@@ -145,14 +145,14 @@ def check_mask_rule(rule: object) -> None:
 
 
 def loosest(rules: Iterable[MaskRule]) -> MaskRule:
-    """The mask rule that allows the most of one or more."""
+    """The loosest of one or more mask rules."""
     return max(rules, key=list(MASK_RULES).index)
 
 
 def task_cost(finish: Any, deadline: Any, end: Any, where: Any, maximum: Any) -> Any:
     """Each task's term of the objective, Eq. 1 of the paper: f/d if late, else 0.
 
-    A task nobody took, of which `finish` is infinite, counts as finished at the end of the mission or at its deadline,
+    A task nobody took, whose `finish` is infinite, counts as finished at the end of the mission or at its deadline,
     whichever is later, so that it costs at least 1.
     """
     counted = where(finish < math.inf, finish, maximum(end, deadline))

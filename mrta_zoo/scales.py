@@ -1,13 +1,15 @@
-"""By what the quantities of a mission are divided, so that neither units nor where it lies nor one odd value matter.
+"""Scales: what places, times, workloads, capacities and speeds are divided by before a network sees them.
+
+So neither the units, nor where the mission lies, nor a single outlier matters.
 
 =========  ================================================================================================
-places     from the frame's lowest corner, divided by L, the longer side of the frame, see `frame_of`
+places     measured from the frame's lowest corner, divided by L, the longer side of the frame, see `frame_of`
 times      divided by T, the latest deadline that can bind, see `slack_time`
 workloads  divided by W, the largest, see `work_scale`
 capacity   divided by C, the largest capacity; speed by V, the largest speed, see `usual`
 =========  ================================================================================================
 
-What is larger than its scale counts as 1.
+Whatever is larger than its scale counts as 1.
 """
 
 from __future__ import annotations
@@ -25,12 +27,12 @@ from mrta_zoo.scenario import FloatArray, Scenario
 MOST_MARGIN = 0.25
 """The frame is the map where no margin around the places is wider than this share of their extent."""
 ODD = 10.0
-"""A capacity or speed is odd if it is more than this many times as large as the next smaller one, and `ENOUGH`."""
+"""A capacity or speed is an outlier if it is more than this many times the next smaller one, and beyond `ENOUGH`."""
 ENOUGH = 50.0
-"""Crossings of the frame in the time T, and of the largest workload in the time of a crossing: what is faster or
-stronger makes hardly a difference."""
+"""Crossings of the frame in the time T, and largest workloads done in the time of a crossing: being faster or stronger
+than that hardly makes a difference."""
 HEAVY = 4.0
-"""W is at most this many times as large as half of the workloads."""
+"""W is at most this many times the median workload."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +63,7 @@ class Scales:
 
         Args:
             scenario: the mission.
-            mask_rule: by it, what robots may choose, which is what counts.
+            mask_rule: under ``"feasible"``, only tasks and robots that can be of use count.
         """
         possible = in_time(scenario) if mask_rule == "feasible" else np.ones((scenario.num_robots, 1), dtype=np.bool_)
         origin, extent = frame_of(scenario, possible)
@@ -81,7 +83,7 @@ class Scales:
         )
 
     def each(self, change: Callable[[Any], Any]) -> Scales:
-        """The same, every field changed."""
+        """These scales with `change` applied to every field."""
         return Scales(*(change(getattr(self, field.name)) for field in fields(self)))
 
     @property
@@ -98,10 +100,10 @@ class Scales:
 
 
 def frame_of(scenario: Scenario, possible: BoolArray | None = None) -> tuple[FloatArray, FloatArray]:
-    """The part of the plane that the mission takes place in: lowest x and y, and width and height, both (2,).
+    """The frame, the part of the plane that the mission takes place in: lowest x and y, width and height, both (2,).
 
-    It is the map where the places fill it more or less, otherwise the box around them: how large a map was declared,
-    and where 0 and 0 lie, is a matter of taste. Tasks that no robot can do, and robots that can do none, do not count.
+    It is the map if the places more or less fill it, otherwise their bounding box: how large a map is declared, and
+    where its origin lies, is arbitrary. Tasks that no robot can do, and robots that can do none, do not count.
 
     Args:
         scenario: the mission.
@@ -128,20 +130,20 @@ def useful_robots(possible: BoolArray) -> BoolArray:
 
 
 def slack_time(scenario: Scenario, extent: FloatArray, useful: BoolArray, work: FloatArray) -> float:
-    """T: the latest deadline or, if earlier, the time by which all that can wait could be done: none binds later.
+    """T: the latest deadline or, if earlier, the time after which no deadline can bind.
 
-    Say that some tasks have a deadline by d, and k others later ones. By d, the former are done or missed, and every
-    robot is free; from then on the better half of the robots, m of them, could do the others: ⌈k/m⌉ each, the heaviest
-    shared out first, in turn, which gives nobody more than the m-th part of all work and (1 − 1/m) of the heaviest. On
-    a square of side L there is a way through n places that is no longer than (√(2n) + 1.75) L (L. Few, "The shortest
-    path and the shortest road through n points", Mathematika 2, 1955), nor of course than n times across. So none of
-    the k needs a deadline later than d and the time which that takes. The earliest such time over all d is returned.
+    Suppose that k tasks have a deadline later than d. By d all others are done or missed, and every robot is free.
+    From then on the better half of the robots, m of them, could do the k tasks: ⌈k/m⌉ each, dealt out in turn, the
+    heaviest first, so that nobody gets more than 1/m of all work plus (1 − 1/m) of the heaviest. In a square of side L
+    there is a path through n points no longer than (√(2n) + 1.75) L (L. Few, "The shortest path and the shortest road
+    through n points", Mathematika 2, 1955), nor of course than n times across. So none of the k tasks needs a deadline
+    later than d plus the time which that takes. The earliest such time over all d is returned.
 
     Args:
         scenario: the mission.
         extent: (2,) width and height of its frame.
         useful: (M,) the robots that can do anything; at least one.
-        work: (N,) workloads, of which those that are far too heavy may be taken for less.
+        work: (N,) workloads; those that are far too heavy may be capped.
     """
     across, side = float(np.hypot(*extent)), float(extent.max())
     speed, capacity = scenario.speed[useful], scenario.capacity[useful]
@@ -153,7 +155,7 @@ def slack_time(scenario: Scenario, extent: FloatArray, useful: BoolArray, work: 
     each = -(-later // robots)
     way = np.minimum(each * across, (np.sqrt(2.0 * each) + 1.75) * side + across) * (each > 0)
     work = work[order]
-    # Of the tasks that come later in this order: what they take together, and the most that one takes.
+    # For the tasks that come later in this order: what they take together, and the most that one takes.
     total = np.cumsum(work[::-1])[::-1] - work
     heaviest = np.append(np.maximum.accumulate(work[:0:-1])[::-1], 0.0)
     needed = way / speed + (total / robots + (1 - 1 / robots) * heaviest) / capacity
@@ -162,11 +164,11 @@ def slack_time(scenario: Scenario, extent: FloatArray, useful: BoolArray, work: 
 
 
 def usual(values: FloatArray, enough: float) -> float:
-    """The largest of some positive numbers, less those that are odd: beyond `enough`, and `ODD` times the next smaller.
+    """The largest of some positive numbers below the outliers: beyond `enough`, and `ODD` times the next smaller one.
 
     Args:
         values: (K,) at least one number > 0.
-        enough: > 0; what is more makes hardly a difference.
+        enough: > 0; more than that hardly makes a difference.
     """
     ordered = np.sort(values)
     odd = (ordered[1:] > ODD * ordered[:-1]) & (ordered[1:] > enough)
@@ -174,14 +176,14 @@ def usual(values: FloatArray, enough: float) -> float:
 
 
 def work_scale(scenario: Scenario, capacity: float) -> float:
-    """W: the largest workload that a robot of some capacity could finish by the deadline, were it there at once.
+    """W: the largest workload that a robot of this capacity could finish by the deadline if it started at the task.
 
-    At most `HEAVY` times the median of these that are > 0; what is heavier is far too heavy, however heavy it is.
+    It is at most `HEAVY` times the median of those > 0; anything heavier is far too heavy, no matter by how much.
     """
     work = scenario.workload[scenario.workload > 0]
     possible = scenario.workload[(scenario.workload > 0) & (scenario.workload <= capacity * scenario.deadline)]
     counted = possible if len(possible) else work
     if not len(counted):
         return 1.0
-    middle = np.sort(counted)[(len(counted) - 1) // 2]  # the lower one of two, so that one large value does not count
+    middle = np.sort(counted)[(len(counted) - 1) // 2]  # the lower of two, so that a single large value does not count
     return float(min(counted.max(), HEAVY * middle))

@@ -36,11 +36,11 @@ class Scenario:
         capacity: (M,) work done per time unit, > 0.
         speed: (M,) distance travelled per time unit, > 0; 1 for every robot by default.
         map_size: width and height of the map, > 0. By default 100 and 100 or, if that does not hold every place, those
-            of the square that does, see `map.square_around`.
-        name: what files, tables and pictures call this scenario.
-        map_origin: the map's lowest x and y, which may be negative. By default 0 and 0 or, where the map would not
-            hold every place then, the least whole x and y of all places, see `map.map_origin_for`.
-        task_names: what people call the tasks, each differently; none if they have no names but their numbers.
+            of a square that does, see `map.square_around`.
+        name: its name in files, tables and pictures.
+        map_origin: the map's lowest x and y, which may be negative. By default (0, 0) or, if the places do not suit
+            that, their smallest whole x and y, see `map.map_origin_for`.
+        task_names: names of the tasks, all different; empty if they are known by their numbers only.
         robot_names: likewise for the robots.
 
     Raises:
@@ -77,7 +77,7 @@ class Scenario:
         object.__setattr__(self, "robot_names", as_names(self.robot_names, "robot", self.num_robots))
 
     def _freeze_arrays(self) -> None:
-        """Copy all arrays, put defaults where nothing is said, and check shapes."""
+        """Copy all arrays, fill in defaults, and check shapes."""
         for attribute in ARRAYS:
             object.__setattr__(self, attribute, _frozen(getattr(self, attribute), attribute))
         for attribute in ("deadline", "capacity"):
@@ -128,19 +128,19 @@ class Scenario:
         return x + width, y + height
 
     def task_name(self, task: int) -> str:
-        """What people call a task: its name, or its number."""
+        """A task for people: its name, or its number."""
         return self.task_names[task] if self.task_names else str(task)
 
     def robot_name(self, robot: int) -> str:
-        """What people call a robot: its name, or "robot" and its number."""
+        """A robot for people: its name, or "robot" and its number."""
         return self.robot_names[robot] if self.robot_names else f"robot {robot}"
 
     def task_label(self, task: int) -> str:
-        """A task for messages about code or files, where it is a number: that and, if it has one, its name."""
+        """A task for messages about code or files: its number and, if it has one, its name."""
         return f"{task} ({self.task_names[task]})" if self.task_names else str(task)
 
     def robot_label(self, robot: int) -> str:
-        """A robot likewise."""
+        """A robot for messages about code or files, likewise."""
         return f"{robot} ({self.robot_names[robot]})" if self.robot_names else str(robot)
 
     def __eq__(self, other: object) -> bool:

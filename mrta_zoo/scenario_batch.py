@@ -29,7 +29,7 @@ class ScenarioBatch:
         capacity: (B, M) capacities; padding is 1.
         speed: (B, M) speeds; padding is 1.
         robot_exists: (B, M) bool.
-        scales: by what networks have them divided; (B,) or (B, 2).
+        scales: what networks divide all this by; fields are (B,) or (B, 2).
     """
 
     task_xy: Tensor
@@ -55,10 +55,10 @@ class ScenarioBatch:
 
         Args:
             scenarios: B of them.
-            device: where the tensors shall be.
+            device: the tensors' device.
             max_tasks: room for tasks.
             max_robots: room for robots.
-            mask_rule: that of the missions to come, for networks that look at them: see `scales.Scales.of`.
+            mask_rule: of the missions to be simulated; the scales depend on it, see `scales.Scales.of`.
 
         Raises:
             ConfigError: if there is no scenario, or one does not fit.
@@ -111,7 +111,7 @@ class ScenarioBatch:
 
     @property
     def device(self) -> torch.device:
-        """Where the tensors are."""
+        """The tensors' device."""
         return self.deadline.device
 
     def to(self, device: torch.device | str) -> ScenarioBatch:

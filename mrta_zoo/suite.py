@@ -1,4 +1,4 @@
-"""The built-in benchmarks, the same for everyone, always: two sizes of TAPTC-like cases, and small scenarios."""
+"""The built-in benchmarks, fixed for good: TAPTC-like cases of two sizes, and small scenarios."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def double_suite() -> list[Scenario]:
 def small_suite() -> list[Scenario]:
     """60 scenarios small enough for an exact solver: 5 to 9 tasks x 1, 2, 3 robots x 4 instances.
 
-    Deadlines are so tight that the best plan seldom completes every task: else any method would be optimal. Named
+    Deadlines are so tight that the best plan seldom completes every task; otherwise any method would be optimal. Named
     ``s{N}a{M}i0{i}``; even instances are uniform, odd ones TAPTC-like. A test holds its hash.
     """
     scenarios = []
@@ -79,4 +79,4 @@ def _taptc_suite(seed: int, tasks: int, robot_counts: tuple[int, ...]) -> list[S
 
 
 SUITES: dict[str, Callable[[], list[Scenario]]] = {"suite-100": builtin_suite, "suite-200": double_suite}
-"""The suites by the names that the command line has for them."""
+"""The suites by their names on the command line."""

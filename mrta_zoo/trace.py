@@ -1,4 +1,4 @@
-"""An episode, decision by decision: what there was to do, who chose what, and what its policy thought of it."""
+"""Traces: episodes, decision by decision, with what each robot chose and what its policy would have chosen."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from mrta_zoo.verify import Score, verify
 from mrta_zoo.wording import counted
 
 TOLERANCE = 1e-3
-"""By how much probabilities may exceed 1 in sum: they are rounded."""
+"""By how much probabilities may add up to more than 1, as they are rounded."""
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """What was chosen at one decision; whose it was, and when, follows from the choices before it.
+    """What was chosen at one decision. Who chose, and when, follows from the choices before it.
 
     Attributes:
         task: the task taken; None if the robot stays where it is for good, although it may choose. The environment
             has no such action, but a plan may end a robot's route at any time.
-        probabilities: the policy's, by task, each from 0 to 1; tasks of next to none may be left out. None if the
-            policy has none.
+        probabilities: the policy's, by task, each from 0 to 1; negligible ones may be left out. None if the policy has
+            none.
         advice: the task that the policy would have taken, where somebody else decided; None where it decided itself.
 
     Raises:
-        PlanError: if a probability is out of range, or they exceed 1 in sum.
+        PlanError: if a probability is out of range, or they add up to more than 1.
     """
 
     task: int | None
@@ -49,7 +49,7 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """A choice with what follows from those before it.
+    """A choice, with what follows from the choices before it.
 
     Attributes:
         index: number of the decision, from 0.
@@ -64,24 +64,24 @@ class Decision:
     choice: Choice
 
 
-@dataclass(frozen=True)  # without slots, so that it can keep what follows from its choices
+@dataclass(frozen=True)  # without slots, so that it can cache what follows from its choices
 class Trace:
-    """The scenario of an episode and every choice made in it, from the start, maybe not to the end.
+    """The scenario of an episode and every choice made in it, from the start but perhaps not to the end.
 
     Arrivals, statuses, masks and their reasons are not stored: `steps` shows the mission before each decision.
 
     Attributes:
         scenario: the scenario.
         choices: in the order in which they were made.
-        mask_rule: what robots could choose, see `rules.MaskRule`.
+        mask_rule: which untaken tasks robots could choose, see `rules.MaskRule`.
         method: name of the policy or solver that chose, or advised; empty if none did.
         decode: how a learned policy chose, such as "greedy"; empty if there is nothing to say.
-        seed: of all draws, None if none was given.
+        seed: of all random draws, None if none was given.
         bound: as in `Plan`.
         bookmark: the decision to look at first, from 0 to the number of choices; None if there is none.
 
     Raises:
-        PlanError: if a choice is one that its robot did not have; the message names the decision.
+        PlanError: if a robot could not choose what it did; the message names the decision.
         ConfigError: if there is no such mask rule.
     """
 
@@ -138,7 +138,7 @@ class Trace:
         return cls(scenario, tuple(choices), mission.mask_rule, plan.method, bound=plan.bound)
 
     def steps(self) -> Iterator[tuple[Mission, Decision]]:
-        """The mission before each decision, with the decision. It is one mission that goes on: do not keep it."""
+        """The mission before each decision, and the decision. It is one mission that moves on: do not keep it."""
         mission = Mission(self.scenario, self.mask_rule)
         for index, choice in enumerate(self.choices):
             if mission.done:
@@ -167,7 +167,7 @@ class Trace:
 
     @cached_property
     def score(self) -> Score:
-        """What the verifier makes of `plan`."""
+        """The verifier's score of `plan`."""
         return verify(self.scenario, self.plan())
 
 
@@ -175,7 +175,7 @@ def after(scenario: Scenario, choices: Sequence[Choice], mask_rule: MaskRule) ->
     """A fresh mission in which these choices have been made.
 
     Raises:
-        PlanError: if a robot did not have its choice.
+        PlanError: if a robot could not choose what it should.
     """
     mission = Mission(scenario, mask_rule)
     for index, choice in enumerate(choices):
@@ -184,10 +184,10 @@ def after(scenario: Scenario, choices: Sequence[Choice], mask_rule: MaskRule) ->
 
 
 def make(mission: Mission, choice: Choice, index: int) -> None:
-    """Let the acting robot have its choice, and move on to the next decision.
+    """Make the acting robot's choice and move on to the next decision.
 
     Raises:
-        PlanError: if it may not have it; the message names the decision by its index.
+        PlanError: if the robot may not choose that; the message names the decision by its index.
     """
     try:
         if choice.task is None:
@@ -199,7 +199,7 @@ def make(mission: Mission, choice: Choice, index: int) -> None:
 
 
 def tightest_rule(scenario: Scenario, plan: Plan) -> MaskRule:
-    """The mask rule that allows the least of those that allow every visit of the plan.
+    """The tightest mask rule that allows every visit of the plan.
 
     Raises:
         PlanError: if the plan does not fit the scenario.

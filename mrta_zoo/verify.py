@@ -1,8 +1,8 @@
-"""The independent verifier: what a plan is worth, computed from the problem statement alone.
+"""The independent verifier: the scores of a plan, computed from the problem statement alone.
 
 It shares no code with the rules, the dynamics or the environment, on purpose: plain Python floats, one robot
-after the other. Every published number goes through it. The arithmetic has the order that `rules` documents,
-in float64, so that a task finished exactly at its deadline counts alike everywhere.
+after the other. Every published number goes through it. The arithmetic is in float64 and in the order that `rules`
+documents, so that a task finished exactly at its deadline counts the same everywhere.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from mrta_zoo.scenario import Scenario
 from mrta_zoo.wording import counted
 
 COST = "Eq. 1: the sum of finish / deadline over the tasks missed"
-"""What the cost is, for where it is shown; `Score` says it in full."""
+"""The definition of the cost in short, for display; `Score` gives it in full."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,10 +50,10 @@ class Score:
         cost: the objective, Eq. 1 of the paper, >= 0: the sum of finish / deadline over what was missed.
             A task nobody took counts as finished at the end of the mission or at its deadline, whichever is
             later.
-        distance: what all robots travelled together, in distance units.
+        distance: travelled by all robots together, in distance units.
         makespan: the latest finish, in time units; 0 if nothing is done.
         schedule: for each robot its visits, in order.
-        task_names: what people call the tasks, as in `Scenario`; empty if they have no names but their numbers.
+        task_names: names of the tasks, as in `Scenario`; empty if they are known by their numbers only.
         robot_names: likewise for the robots.
     """
 
@@ -74,7 +74,7 @@ def verify(scenario: Scenario, plan: Plan) -> Score:
     A late task is no error: it is part of the plan and of its cost.
 
     Raises:
-        PlanError: if the number of routes is not the number of robots, or a task is unknown, no integer, or
+        PlanError: if the number of routes is not the number of robots, or a task is unknown, not an integer, or
             taken twice.
     """
     routes = _routes(scenario, plan)
@@ -121,7 +121,7 @@ def _legs(scenario: Scenario, robot: int, route: list[int]) -> list[float]:
     for task in route:
         to_x, to_y = scenario.task_xy[task].tolist()
         dx, dy = to_x - x, to_y - y
-        # Not math.hypot, whose rounding differs: a tie with a deadline must fall alike everywhere.
+        # Not math.hypot, whose rounding differs: a tie with a deadline must be settled the same way everywhere.
         legs.append(math.sqrt(dx * dx + dy * dy))
         x, y = to_x, to_y
     return legs

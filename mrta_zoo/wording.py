@@ -1,4 +1,4 @@
-"""Text for people: numbers of things, lists of names, and how names are spelt."""
+"""Wording: counts of things, lists of names, and the spelling of names."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ def counted(count: int, singular: str, plural: str = "", form: str = "") -> str:
     Args:
         count: how many, >= 0.
         singular: what they are.
-        plural: that of more or less than one, if it is not just an s longer.
-        form: of the number, as after the colon in a format string.
+        plural: its plural, if that is not the singular with an s.
+        form: format of the number, as after the colon in a format string.
     """
     return f"{count:{form}} {singular if count == 1 else plural or singular + 's'}"
 
 
 def listed(names: Iterable[str]) -> str:
-    """a, b, "c, d": names after each other, in quotes if they would not be told from several, or from their neighbours.
+    """a, b, "c, d": a list of names, in quotes where one might look like several or run into its neighbours.
 
     Quotes within quotes are doubled, as in CSV.
     """
@@ -27,12 +27,12 @@ def listed(names: Iterable[str]) -> str:
 
 
 def composed(text: str) -> str:
-    """Text with accents in one character each (NFC), as names are compared: some systems write files' names in two."""
+    """Text in the form in which names are compared (NFC): some systems write accented letters as two characters."""
     return unicodedata.normalize("NFC", text)
 
 
 def is_utf8(text: str) -> bool:
-    """Whether it can be written as UTF-8, which the name of a file need not be."""
+    """Whether a text can be written as UTF-8, which is not so for every file name."""
     try:
         text.encode()
     except UnicodeEncodeError:
