@@ -16,7 +16,7 @@ from mrta_zoo.show.render import RENDER_FPS, RENDER_MODES
 
 
 class AecMrtaEnv(EnvBase, AECEnv[str, Any, Any]):
-    """The environment without wrappers.
+    """The AEC environment without wrappers.
 
     Can be pickled and deep-copied at any moment; the copy goes on as the original would.
 
@@ -31,7 +31,7 @@ class AecMrtaEnv(EnvBase, AECEnv[str, Any, Any]):
         "name": "mrta_v0",
         "render_modes": list(RENDER_MODES),
         "render_fps": RENDER_FPS,
-        "is_parallelizable": False,  # PettingZoo's conversion asks for cyclic turns
+        "is_parallelizable": False,  # PettingZoo's conversion needs cyclic turns
     }
 
     @with_options
@@ -90,11 +90,11 @@ class AecMrtaEnv(EnvBase, AECEnv[str, Any, Any]):
         return self._world.seen_by(robot, self._world.mask(robot))
 
     def mask(self, agent: str) -> npt.NDArray[np.int8]:
-        """(max_tasks,) int8, 1 where the agent may choose when it is next free; by this its actions are judged."""
+        """(max_tasks,) int8, 1 where the agent may choose when next free; its actions are checked against this."""
         return self._world.mask(self._world.robot(agent))
 
     def end_by(self, agent: str, reward: float) -> None:
-        """End the episode for everyone because `agent` did what it may not: it gets `reward`, the others 0."""
+        """End the episode for everyone after an illegal action of `agent`, which gets `reward`; the others get 0."""
         self.terminations = dict.fromkeys(self.agents, True)
         self.truncations = dict.fromkeys(self.agents, True)
         self.rewards = dict.fromkeys(self.agents, 0.0) | {agent: reward}
@@ -103,10 +103,10 @@ class AecMrtaEnv(EnvBase, AECEnv[str, Any, Any]):
         self._deads_step_first()
 
     def _settle(self, rewards: list[float]) -> None:
-        """Enter the books after the clock has moved: rewards, terminations, infos, who is next."""
+        """Update rewards, infos, terminations and the agent to act after the clock has moved."""
         mission, agents = self._world.mission, self.agents
         infos, given = self._world.infos(), dict(zip(self._world.agents, rewards, strict=True))
-        gone = len(agents) < len(rewards)  # some are, if staggered
+        gone = len(agents) < len(rewards)  # some agents have left, if staggered
         self.rewards = {agent: given[agent] for agent in agents} if gone else given
         self.infos = {agent: infos[agent] for agent in agents} if gone else infos
         for agent, reward in self.rewards.items():

@@ -1,4 +1,4 @@
-"""What the AEC and the parallel environment have in common of PettingZoo's interface."""
+"""The part of PettingZoo's interface that the AEC and the parallel environment share."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ from mrta_zoo.show.render import Viewer, describe, headline
 
 
 class EnvBase:
-    """Spaces, state and rendering on top of a `World`; comes first among the bases.
+    """Spaces, state and rendering on top of a `World`; must come first among the base classes.
 
     Args:
         settings: the environment's options.
-        num_actions: of every agent; whether an action is one is judged by this, not by the spaces handed out.
+        num_actions: number of every agent's actions; actions are checked against this, not the spaces handed out.
     """
 
     def __init__(self, settings: Settings, num_actions: int) -> None:
@@ -41,7 +41,7 @@ class EnvBase:
 
     @property
     def mission(self) -> Mission:
-        """The mission under way, live, with every detail that observations round off or leave out: read it only."""
+        """The mission under way, live, with every detail that observations round or leave out: do not change it."""
         return self._world.mission
 
     def observation_space(self, agent: str) -> spaces.Space[Any]:
@@ -50,7 +50,7 @@ class EnvBase:
         return self._world.observation_space
 
     def action_space(self, agent: str) -> spaces.Discrete:
-        """The space of actions; equal for all agents, but each has an object, and so a seed, of its own."""
+        """The space of actions; equal for all agents, but each has its own object, and so its own seed."""
         self._world.robot(agent)
         return self._world.action_spaces[agent]
 
@@ -59,7 +59,7 @@ class EnvBase:
         return self._world.state()
 
     def render(self) -> np.ndarray | str | None:
-        """The mission as text or picture, or shown in a window, by `render_mode`; see `render.Viewer.render`."""
+        """The mission as text or a picture, or shown in a window, by `render_mode`; see `render.Viewer.render`."""
         return self._viewer.render(self.mission)
 
     def _repr_html_(self) -> str:
@@ -72,7 +72,7 @@ class EnvBase:
         try:
             from mrta_zoo.show.render.canvas import as_png  # pygame is heavy and optional
             from mrta_zoo.show.render.picture import draw
-        except MissingExtraError:  # it is there, and broken
+        except MissingExtraError:  # it is installed, but broken
             return text
 
         png = b64encode(as_png(draw(self.mission))).decode()

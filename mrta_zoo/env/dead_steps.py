@@ -1,4 +1,4 @@
-"""An AEC wrapper for loops that would rather not step for agents that have terminated."""
+"""An AEC wrapper that steps for terminated agents, so that loops need not."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from pettingzoo.utils.wrappers import BaseWrapper
 
 
 class SkipDeadSteps(BaseWrapper[str, Any, Any]):
-    """Takes the steps with None that PettingZoo asks of terminated agents, so that every turn is a decision.
+    """Takes the steps with None that PettingZoo requires of terminated agents, so that every turn is a decision.
 
     >>> from mrta_zoo import mrta_v0
     >>> from mrta_zoo.env.dead_steps import SkipDeadSteps
     >>> env = SkipDeadSteps(mrta_v0.env(reward="individual"))
     >>> env.reset(seed=1)
     >>> for agent in env.agent_iter():
-    ...     observation, reward, *_ = env.last()  # the reward of this agent's decision before
+    ...     observation, reward, *_ = env.last()  # the reward of this agent's previous decision
     ...     env.step(env.action_space(agent).sample(observation["action_mask"]))
     >>> env.final_rewards  # and of everyone's last
 
     Attributes:
-        final_rewards: for each agent that has terminated in this episode its reward since its last decision, which
+        final_rewards: for each agent that has terminated in this episode, its reward since its last decision, which
             `last` would have shown in its dead step.
     """
 

@@ -1,7 +1,7 @@
 """The mission as a single-agent Gymnasium environment: whichever robot is to act, one agent acts for it.
 
-For libraries that know no agents (Stable-Baselines3, sb3-contrib's MaskablePPO, Tianshou, CleanRL): one policy shared
-by all robots, which sees in each step what the acting robot sees.
+For single-agent libraries (Stable-Baselines3, sb3-contrib's MaskablePPO, Tianshou, CleanRL): one policy shared by all
+robots, which sees in each step what the acting robot sees.
 
 >>> from mrta_zoo.env.gym_view import ActingRobotEnv
 >>> env = ActingRobotEnv(reward="completion", observation="masked")  # or gymnasium.make("mrta_zoo/mrta-v0", …)
@@ -34,20 +34,20 @@ Step = tuple[Any, float, bool, bool, dict[str, Any]]
 class ActingRobotEnv(gymnasium.Env[Any, Any]):
     """One agent that acts for each robot when its turn comes. Can be pickled and deep-copied at any moment.
 
-    Observations, actions and infos are the acting robot's, as in `mrta_v0`; infos have its index besides, as
-    ``robot``. The reward of a step is the mean of all robots' rewards: with a team reward what each robot gets. After
-    the last step the observation is that of ``robot_0``.
+    Observations, actions and infos are the acting robot's, as in `mrta_v0`; infos also hold its index, as ``robot``.
+    The reward of a step is the mean of all robots' rewards: with a team reward, what each robot gets. After the last
+    step the observation is that of ``robot_0``.
 
-    Where the mission is over, the mask is all 1 in observations, infos and `action_masks` alike. So a masked policy
+    Once the mission is over, the mask is all 1 in observations, infos and `action_masks` alike. So a masked policy
     always has an action: vector environments ask for one after an episode's end, too, ignore it, and reset.
-    Where no robot can do anything from the start, any action ends the episode, with the reward of a mission that has
+    If no robot can do anything from the start, any action ends the episode, with the reward of a mission that has
     ended.
 
     Args:
-        on_illegal: what an action does that the mask forbids: ``"terminate"`` the episode, ``"raise"`` an error, or
-            ``"replace"``: stand for the next that the mask allows, for learners that know no masks.
-        illegal_reward: reward of a step that so ends the episode.
-        **options: see `mrta_zoo.env.settings.Settings`; without ``staggered`` and ``absent``, for there is one agent.
+        on_illegal: what happens on an action that the mask forbids: ``"terminate"`` the episode, ``"raise"`` an error,
+            or ``"replace"`` the action by the next that the mask allows, for learners without masking.
+        illegal_reward: reward of a step that ends the episode this way.
+        **options: see `mrta_zoo.env.settings.Settings`; without ``staggered`` and ``absent``, as there is one agent.
 
     Raises:
         ConfigError: if an option cannot be used.
@@ -81,7 +81,7 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
 
     @property
     def robot(self) -> int:
-        """Index of the robot to act; 0 where the mission is over.
+        """Index of the robot to act; 0 once the mission is over.
 
         Raises:
             ActionError: before the first reset.
@@ -90,7 +90,7 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Start an episode; arguments and errors as in the AEC form."""
-        self._aec.reset(seed, options)  # which says what is wrong with a seed
+        self._aec.reset(seed, options)  # which also checks the seed
         super().reset(seed=None if seed is None else int(seed))
         self._over = False
         return self._seen()
@@ -123,17 +123,17 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
         return observation, sum(rewards) / len(rewards), self._over, False, info
 
     def action_masks(self) -> npt.NDArray[np.bool_]:
-        """(max_tasks,) bool, true where the acting robot may choose; all true where the mission is over.
+        """(max_tasks,) bool, true where the acting robot may choose; all true once the mission is over.
 
-        Under this name sb3-contrib's MaskablePPO asks for it, also through vector environments. Observations and infos
-        have the same as int8.
+        sb3-contrib's MaskablePPO looks for a method of this name, also through vector environments. Observations and
+        infos hold the same mask as int8.
         """
         if self.mission.done:
             return np.ones(self._aec.num_actions, dtype=np.bool_)
         return self._aec.mask(self._aec.agent_selection).astype(np.bool_)
 
     def render(self) -> Any:
-        """The mission as text or picture, by `render_mode`."""
+        """The mission as text or a picture, by `render_mode`."""
         return self._aec.render()
 
     def _seen(self) -> tuple[Any, dict[str, Any]]:

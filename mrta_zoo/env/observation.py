@@ -1,11 +1,11 @@
 """What a robot sees: the mission as bounded, scale-free float32 arrays.
 
 Everything is divided by a scale of the scenario (`mrta_zoo.scales`: L, T, W, C, V), so that every number lies in
-[0, 1]: places are counted from the lowest corner of the mission's frame in L, times in T, workloads in W, capacities in
-C and speeds in V. What is larger than its scale shows as 1.
+[0, 1]: places are measured from the lowest corner of the mission's frame in units of L, times in T, workloads in W,
+capacities in C and speeds in V. Whatever is larger than its scale shows as 1.
 
-The ``mission`` array carries what relates these scales: L/V/T, the time the fastest robot takes to cross the map,
-and W/C/T, the time the strongest takes for the largest workload. These ratios r >= 0 are shown as r/(1 + r).
+The ``mission`` array relates these scales: L/V/T, the time the fastest robot takes to cross the map, and W/C/T, the
+time the strongest takes for the largest workload. These ratios r >= 0 are shown as r/(1 + r).
 
 ====================  ===============  ======================================================================
 ``tasks``             (max_tasks, 8)   x, y, deadline, workload, and a one-hot status: active, assigned,
@@ -16,8 +16,8 @@ and W/C/T, the time the strongest takes for the largest workload. These ratios r
 ``mission``           (3,)             elapsed time, L/V/T and W/C/T squashed
 ====================  ===============  ======================================================================
 
-The flat form is these tables one after another, row by row, in this order; `split` turns it into tables again. The
-global state is the same without the last column of ``robots`` and without ``ego``.
+The flat form concatenates these tables, row by row, in this order; `split` separates them again. The global state is
+the same without the last column of ``robots`` and without ``ego``.
 
 The five context features of the paper (§III-B) are all there: elapsed time (``mission``), the robot's capacity and
 place (``ego``), the peers' destinations and capacities (``robots``).
@@ -39,7 +39,7 @@ from mrta_zoo.scales import Scales
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.wording import counted
 
-if TYPE_CHECKING:  # imported where spaces are made: networks are trained on machines without Gymnasium
+if TYPE_CHECKING:  # imported only where spaces are made: networks are also trained on machines without Gymnasium
     from gymnasium import spaces
 
 TASK_FEATURES = ("x", "y", "deadline", "workload", "active", "assigned", "completed", "missed")
@@ -61,7 +61,7 @@ def observation_space(max_tasks: int, max_robots: int, num_actions: int | None =
     def box(*shape: int) -> spaces.Box:
         return spaces.Box(0.0, 1.0, shape, np.float32)
 
-    tables: list[tuple[str, spaces.Space[Any]]] = [  # a list, for a dictionary would be sorted by name
+    tables: list[tuple[str, spaces.Space[Any]]] = [  # a list, as a dictionary would be sorted by name
         ("tasks", box(max_tasks, len(TASK_FEATURES))),
         ("robots", box(max_robots, len(ROBOT_FEATURES))),
         ("ego", box(len(EGO_FEATURES))),
@@ -116,7 +116,7 @@ class Observer:
     """Turns a mission into observations. Keeps the tables of its scenario, so that a look is cheap.
 
     Args:
-        scenario: of the missions that are looked at.
+        scenario: of the missions to observe.
         max_tasks: number of task rows.
         max_robots: number of robot rows.
         mask_rule: that of the missions.
@@ -141,7 +141,7 @@ class Observer:
         self._mission[1:] = scales.crossing_ratio, scales.work_ratio
 
     def observe(self, mission: Mission, robot: int) -> Observation:
-        """What `robot` sees now. Fresh arrays at each call. The mask is what it may choose when next free."""
+        """What `robot` sees now, as fresh arrays. The mask is what it may choose when next free."""
         known = mission.known(robot)
         self.look(known)
         return {"observation": self.tables(robot), "action_mask": self.mask(known, robot)}
@@ -149,7 +149,7 @@ class Observer:
     def look(self, mission: Mission) -> None:
         """Take in the mission as it stands. `flat`, `tables` and `state` show what was last looked at.
 
-        Only what has changed since the last look is written, so that a look costs little in a large mission.
+        Only what has changed since the last look is written, which keeps a look cheap in a large mission.
         """
         if mission is not self._looked_at:
             self._looked_at = mission
@@ -207,7 +207,7 @@ class Observer:
         self._tasks, self._robots, self._mission = tables["tasks"], tables["robots"], tables["mission"]
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without the views, which would come back as arrays of their own."""
+        """Without the views, which would be restored as separate arrays."""
         views = ("_tasks", "_robots", "_mission")
         return {name: value for name, value in vars(self).items() if name not in views}
 
@@ -217,7 +217,7 @@ class Observer:
 
 
 def _layout(max_tasks: int, max_robots: int) -> tuple[int, int, int, int]:
-    """Where in the flat form tasks, robots, ego and mission end."""
+    """Where tasks, robots, ego and mission end in the flat form."""
     tasks = max_tasks * len(TASK_FEATURES)
     robots = tasks + max_robots * len(ROBOT_FEATURES)
     ego = robots + len(EGO_FEATURES)

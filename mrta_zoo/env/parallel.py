@@ -1,31 +1,31 @@
 """The parallel form of `mrta_v0`: in each step all robots that are free choose at once.
 
-Each step the agents that must choose are the robots that are free now and have something to choose. Their mask shows
+In each step the agents that must choose are the robots that are free now and have something to choose. Their masks show
 those tasks. All others, under way or retired, have only the no-op, action ``max_tasks``; leaving them out of `step`'s
-actions means the same. Then the clock moves to the next moment at which somebody is free.
+actions means the same. Then the clock moves to the next moment at which a robot is free.
 
 **Conflicts.** When several free robots choose the same task in one step, the one with the lowest index gets it. The
 others choose again in the next step: the clock does not move, and their ``infos[agent]["conflict"]`` is 1.
 
-**Illegal actions** are those the mask forbids, also the no-op (or no action) of a robot that must choose. By
+**Illegal actions** are those the mask forbids, including the no-op (or no action) of a robot that must choose. With
 ``on_illegal="terminate"`` they end the episode for everyone: each agent that sent one is rewarded with
-`illegal_reward`, the others with 0, and no task is taken. By ``on_illegal="raise"`` they raise `ActionError` and change
-nothing. By ``on_illegal="replace"`` each stands for the next legal action, from it upwards and then from 0, for
-learners that know no masks. An action outside the action space, or one for an agent that is not there, always raises.
+`illegal_reward`, the others with 0, and no task is taken. With ``on_illegal="raise"`` they raise `ActionError` and
+change nothing. With ``on_illegal="replace"`` each is replaced by the next legal action, upwards from it and then from
+0, for learners without masking. An action outside the action space, or for an agent that is not there, always raises.
 
 Observations, rewards, infos and termination are those of the AEC form, except that ``action_mask`` is
-(max_tasks + 1,) and is the mask of this very step; ``mask_reason`` stays (max_tasks,) and tells why a task is masked
-when the robot is next free. No mask is all 0: one that has terminated shows the no-op. Where no robot can do anything
-at the start, every agent has only the no-op, and the first step ends the episode, with the reward of a mission that has
-ended.
+(max_tasks + 1,) and applies to the current step; ``mask_reason`` stays (max_tasks,) and tells why a task is masked
+when the robot is next free. No mask is all 0: that of an agent that has terminated shows the no-op. If no robot can do
+anything at the start, every agent has only the no-op, and the first step ends the episode, with the reward of a mission
+that has ended.
 
-**Teams of varying size.** A scenario may have fewer robots than there are possible agents. By ``absent="omit"`` (the
-default) the episode has fewer agents, as PettingZoo allows. By ``absent="noop"`` all possible agents are there to the
+**Teams of varying size.** A scenario may have fewer robots than there are possible agents. With ``absent="omit"`` (the
+default) the episode has fewer agents, as PettingZoo allows. With ``absent="noop"`` all possible agents are there to the
 end, those without a robot with only the no-op and reward 0: for libraries that want the same agents in every episode
 (SuperSuit's vector environments, TorchRL).
 
-A plan made here is one the AEC form can make: finish times depend only on who does what in which order. Where no two
-robots are free at the same time, the forms are decision for decision the same.
+Every plan made here can also be made in the AEC form: finish times depend only on who does what in which order. Where
+no two robots are free at the same time, the two forms agree decision by decision.
 """
 
 from __future__ import annotations
@@ -81,7 +81,7 @@ class ParallelMrtaEnv(EnvBase, ParallelEnv[str, Any, Any]):
         self.illegal_reward = as_finite("illegal_reward", illegal_reward)
         self._present: list[str] = []
         self._choosing: set[int] = set()
-        self._owed: list[float] = []  # reset returns no rewards, so the first step brings those of the start
+        self._owed: list[float] = []  # reset returns no rewards, so the first step pays those of the start
 
     @property
     def agents(self) -> list[str]:

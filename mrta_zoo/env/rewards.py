@@ -1,4 +1,4 @@
-"""What the robots are rewarded for. A reward is a function; pass your own as ``mrta_v0.env(reward=function)``."""
+"""Rewards: functions of the mission and what was just finished. ``mrta_v0.env(reward=function)`` takes your own."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ Reward = Callable[[Mission, Sequence[Finished]], Sequence[float]]
 
 Called once at reset, with nothing finished, and once after every step, with what was finished in it, in order of
 time; the numbers must be finite. Within an episode every finish is reported exactly once, and ``mission.done`` is
-seen exactly once. The list of what was finished is the function's own. The mission is the environment's, not a copy,
-which would cost more than the step: the function must not change it, for that would change the episode. It has to be a
-module-level function (or a picklable object) if the environment is to be pickled.
+seen exactly once. The function may keep or change the list of what was finished. The mission is the environment's own,
+as a copy would cost more than the step: the function must not change it, as that would change the episode. It has to be
+a module-level function (or a picklable object) if the environment is to be pickled.
 """
 
 
@@ -67,7 +67,7 @@ def make_reward(reward: RewardName | Reward) -> Reward:
 
 
 def as_rewards(given: object, robots: int) -> list[float]:
-    """What a reward gave, as a float for each robot.
+    """What a reward function returned, as a float for each robot.
 
     Raises:
         ConfigError: if it is anything but a finite number for each robot.

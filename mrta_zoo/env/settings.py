@@ -30,7 +30,7 @@ Maker = TypeVar("Maker", bound=Callable[..., Any])
 
 
 class Options(TypedDict, total=False):
-    """What type checkers know of the keyword arguments that make an environment; `Settings` says what they mean."""
+    """The keyword arguments of the environment, for type checkers; `Settings` says what they mean."""
 
     scenario: Scenario | None
     generator: Generator | str | None
@@ -43,7 +43,7 @@ class Options(TypedDict, total=False):
 
 
 class TeamOptions(Options, total=False):
-    """Those of the forms in which each robot is an agent."""
+    """The keyword arguments of the forms in which each robot is an agent."""
 
     staggered: bool
     absent: Absent
@@ -67,9 +67,9 @@ class Settings:
         render_mode: what `render` gives: None, ``"ansi"`` (text), ``"rgb_array"`` (a picture), or ``"human"`` (shows
             the picture in a window at each step); the last two need ``mrta_zoo[render]``.
         staggered: whether a robot terminates as soon as it retires, instead of all together at the end.
-        absent: what becomes of the possible agents that a scenario has no robot for: ``"omit"`` them, or ``"noop"``:
-            they are there to the end with nothing to choose and reward 0, for libraries that want the same agents in
-            every episode.
+        absent: what to do with possible agents that the scenario has no robot for: ``"omit"`` them, or ``"noop"``: keep
+            them to the end with nothing to choose and reward 0, for libraries that want the same agents in every
+            episode.
 
     Raises:
         ConfigError: if an option cannot be used.
@@ -109,7 +109,11 @@ class Settings:
 
     @classmethod
     def of(cls, options: Mapping[str, Any]) -> Settings:
-        """Settings from keyword arguments, with a sentence about a misspelt one."""
+        """Settings from keyword arguments.
+
+        Raises:
+            ConfigError: if one is misspelt or cannot be used.
+        """
         check_options(options, [field.name for field in dataclasses.fields(cls)])
         return cls(**options)
 
@@ -117,13 +121,13 @@ class Settings:
         """The fixed scenario, or one from the generator.
 
         Raises:
-            ConfigError: if the generator gives something else than a scenario, or may give one that does not fit.
+            ConfigError: if the generator returns anything but a scenario, or may draw one that does not fit.
         """
         if self.scenario is not None:
             return self.scenario
         for what, room in (("tasks", self.max_tasks), ("robots", self.max_robots)):
             most = _most(self.generator, what)
-            if most is not None and room is not None and most > room:  # at once, not on some later day
+            if most is not None and room is not None and most > room:  # now, not in some later episode
                 raise ConfigError(
                     f"the generator draws up to {most} {what}, but this environment has room for {room}; "
                     f"make it with max_{what}={most} or more, or pass another generator"
@@ -172,7 +176,7 @@ def with_options(make: Maker) -> Maker:
 
     @functools.wraps(make)
     def made(*arguments: Any, **options: Any) -> Any:
-        check_options(options.keys() - defaults.keys(), names)  # why it has not all of these, the form says
+        check_options(options.keys() - defaults.keys(), names)  # the form itself says why it lacks some of these
         return make(*arguments, **options)
 
     made.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
@@ -183,7 +187,7 @@ def check_options(options: Iterable[str], names: Sequence[str]) -> None:
     """Check the names of options.
 
     Raises:
-        ConfigError: if there is none of a name.
+        ConfigError: if there is no option of a name.
     """
     for option in options:
         if option not in names:

@@ -1,6 +1,6 @@
-"""What the AEC and the parallel environment share: the mission under way, who sees what, and why tasks are masked.
+"""The world behind the AEC and the parallel environment: the mission under way, what robots see, and their masks.
 
-Knows robots by index and nothing of turns; `aec.AecMrtaEnv` and `parallel.ParallelMrtaEnv` add PettingZoo's books.
+Knows robots by index and nothing of turns; `aec.AecMrtaEnv` and `parallel.ParallelMrtaEnv` add PettingZoo's interface.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ class World:
     Attributes:
         settings: the environment's options, all filled in.
         names: names of the possible agents, ``robot_0`` to ``robot_{max_robots-1}``.
-        agents: names of those that are there in the current episode: the scenario's and, with ``absent="noop"``, all.
+        agents: names of the agents in the current episode: one per robot of the scenario; all with ``absent="noop"``.
         index: robot index of each name.
-        action_spaces: for each name ``Discrete(num_actions)``, each an object of its own so that it has its own seed.
+        action_spaces: for each name ``Discrete(num_actions)``, separate objects so that each has its own seed.
         observation_space: the space of every agent's observations.
         state_space: the space of `state`.
         completed_by_now: number of tasks completed by the clock; `Mission.completed` counts those still under way, too.
@@ -143,7 +143,7 @@ class World:
         return seen if form == "flat" else {"observation": seen, "action_mask": mask}
 
     def state(self) -> FloatTable:
-        """(S,) the global state, of which nothing is unknown."""
+        """(S,) the global state, made from the whole mission rather than from what one robot knows."""
         self._look(self.mission)
         return self._observer.state()
 
@@ -182,7 +182,7 @@ def _scenario_option(options: dict[str, Any] | None) -> Scenario | None:
     if not isinstance(options, Mapping):
         raise ConfigError(f"reset's options is {options!r}; expected a dictionary such as {{'scenario': scenario}}")
     for option in options:
-        # PettingZoo's contract tests pass {"options": 1} to every environment, so that this key has to be let by.
+        # PettingZoo's contract tests pass {"options": 1} to every environment, so this key must be let through.
         if option not in ("scenario", "options"):
             raise ConfigError(f"reset has no option {option!r}; it has 'scenario'")
     scenario = options.get("scenario")

@@ -1,8 +1,8 @@
-"""PettingZoo's three standard wrappers, with a short cut to the books and a clearer error.
+"""PettingZoo's three standard wrappers, with direct access to the environment and clearer errors.
 
-A wrapper of PettingZoo asks the one below it for `agent_selection`, `rewards` and so on, which asks the next: some
-fifty calls a turn. These read them from the environment itself. Where PettingZoo's judge an action by what they have
-handed out (the mask shown last, the action space), these ask the environment. What they do is otherwise PettingZoo's.
+A PettingZoo wrapper asks the one below it for `agent_selection`, `rewards` and so on, which asks the next: some fifty
+calls per turn. These read them from the environment itself. Where PettingZoo's check an action against what they have
+handed out (the mask shown last, the action space), these ask the environment. Otherwise they do what PettingZoo's do.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from mrta_zoo.actions import as_action
 from mrta_zoo.errors import ActionError, OutOfBoundsError
 
 
-def _book(name: str) -> Any:
+def _attribute(name: str) -> Any:
     return property(attrgetter(f"_innermost.{name}"), doc=f"The environment's `{name}`.")
 
 
-class _DirectBooks(BaseWrapper[str, Any, Any]):
-    """Reads the environment's books without asking the wrappers in between."""
+class _DirectAccess(BaseWrapper[str, Any, Any]):
+    """Reads the environment's attributes without asking the wrappers in between."""
 
-    agent_selection = _book("agent_selection")
-    terminations = _book("terminations")
-    truncations = _book("truncations")
-    rewards = _book("rewards")
-    infos = _book("infos")
-    _cumulative_rewards = _book("_cumulative_rewards")
+    agent_selection = _attribute("agent_selection")
+    terminations = _attribute("terminations")
+    truncations = _attribute("truncations")
+    rewards = _attribute("rewards")
+    infos = _attribute("infos")
+    _cumulative_rewards = _attribute("_cumulative_rewards")
 
     def __init__(self, env: AECEnv[str, Any, Any]) -> None:
         self._innermost: Any = env.unwrapped
@@ -38,7 +38,7 @@ class _DirectBooks(BaseWrapper[str, Any, Any]):
 
     @property
     def agents(self) -> list[str]:
-        """Those that are there now: a list of the caller's own."""
+        """The agents that are there now, as a new list."""
         return list(self._innermost.agents)
 
     def _over(self) -> bool:
@@ -48,15 +48,15 @@ class _DirectBooks(BaseWrapper[str, Any, Any]):
         return bool(env.terminations[agent] or env.truncations[agent])
 
     def __str__(self) -> str:
-        """The environment's name, as PettingZoo's wrappers give."""
+        """The environment's name, as PettingZoo's wrappers give it."""
         return str(self.env)
 
     def _repr_html_(self) -> str:
-        html: str = self._innermost._repr_html_()  # PettingZoo's wrapper passes on no name with an underscore
+        html: str = self._innermost._repr_html_()  # PettingZoo's wrappers hide names with an underscore
         return html
 
 
-class IllegalActionWrapper(_DirectBooks):
+class IllegalActionWrapper(_DirectAccess):
     """PettingZoo's `TerminateIllegalWrapper`: an illegal action ends the episode for everyone.
 
     Args:
@@ -80,7 +80,7 @@ class IllegalActionWrapper(_DirectBooks):
             env.end_by(env.agent_selection, self._illegal_reward)
 
 
-class ActionSpaceWrapper(_DirectBooks):
+class ActionSpaceWrapper(_DirectAccess):
     """PettingZoo's `AssertOutOfBoundsWrapper` with an error that names the agent, the action and what is valid."""
 
     def step(self, action: Any) -> None:
@@ -97,5 +97,5 @@ class ActionSpaceWrapper(_DirectBooks):
         self.env.step(action)
 
 
-class OrderWrapper(_DirectBooks, OrderEnforcingWrapper[str, Any, Any]):
+class OrderWrapper(_DirectAccess, OrderEnforcingWrapper[str, Any, Any]):
     """PettingZoo's `OrderEnforcingWrapper`: an error for what cannot be asked before the first reset."""
