@@ -1,4 +1,4 @@
-"""Files that are replaced whole or not at all, wherever the system can do that."""
+"""Atomic writing: files are replaced whole or not at all, wherever the system allows it."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from io import FileIO
 from pathlib import Path
 
 _NOT_REPLACEABLE = (errno.EBUSY, errno.EXDEV, errno.EPERM, errno.EACCES, errno.EROFS)
-"""What the system says where another file may not take a file's place, though the file itself may be written to."""
+"""The system's errors where a file cannot be replaced, though it may be written to."""
 
-_IN_PLACE = threading.Lock()  # whoever writes a file in place: two would mix what they write
+_IN_PLACE = threading.Lock()  # held while writing in place: two writers would mix their output
 
 
 @contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Write to the path that it yields; at the end the file there takes the place of `path`.
 
-    Readers see the old file or the new one, never half of it, also if the process is killed or others write the same
-    file. If anything is raised, what was there stays untouched. Links are followed: the file that they lead to is the
-    one replaced, and the new one has its owner and permissions.
+    Readers see the old file or the new one, never half of it, even if the process is killed or others write the same
+    file. If anything is raised, the old file stays untouched. Links are followed: the file that they lead to is
+    replaced, and the new one gets its owner and permissions.
 
-    Two kinds of files cannot be replaced. One that is mounted by itself, has a second name, belongs to somebody else or
-    is in a folder that may not be written to is written in place, by one writer at a time. What was there is put back
-    if anything is raised; but readers may meanwhile see half of it, and so it stays if the process is killed. A device
-    or pipe, such as ``/dev/stdout``, is simply written to: its own path is yielded.
+    Two kinds of files cannot be replaced. A file that is a mount point, has a second name, belongs to somebody else or
+    is in a read-only folder is written in place, by one writer at a time. Its old contents are restored if anything is
+    raised; but readers may see a half-written file meanwhile, and one remains if the process is killed. A device or
+    pipe, such as ``/dev/stdout``, is simply written to: its own path is yielded.
 
     >>> with replacing("plan.json") as partial:
     ...     partial.write_text("{}")
@@ -57,7 +57,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def destination(path: str | os.PathLike[str]) -> Path:
-    """The file that writing to `path` writes: the one that links lead to, which need not exist.
+    """The file that writing to `path` changes: the one that links lead to, which need not exist.
 
     Raises:
         OSError: if it is a folder, no file can be there, or the file there may not be written to.
@@ -83,12 +83,12 @@ def is_special(path: str | os.PathLike[str]) -> bool:
 
 
 def _new_partial(target: Path) -> Path | None:
-    """An empty file of a name that nobody else has, beside the target or, where that cannot be, for temporary files.
+    """A new empty file with a unique name, beside the target or, if that fails, in the folder for temporary files.
 
-    None if there is no place for these either, as in a container that may write to the target alone.
+    None if that fails, too, as in a container that may write to nothing but the target.
     """
     there = os.path.exists(target)
-    mode = 0o600 if there else 0o666  # nobody may read what the file will hide; a new one is as the user wants new ones
+    mode = 0o600 if there else 0o666  # an old file may be private; a new one gets the user's default permissions
     name = f".{secrets.token_hex(8)}.tmp"
     partial = target.with_name(name)
     try:
@@ -105,7 +105,7 @@ def _new_partial(target: Path) -> Path | None:
 
 
 def _put(partial: Path, target: Path) -> None:
-    """Have the finished file take its place."""
+    """Move the finished file to its place."""
     if not os.path.exists(target):
         os.replace(partial, target)
         return
@@ -122,7 +122,7 @@ def _put(partial: Path, target: Path) -> None:
 
 
 def _make_alike(partial: Path, target: Path) -> bool:
-    """Give a file another one's owner and permissions; whether it can then be put in its place unnoticed."""
+    """Give a file another one's owner and permissions; False if it still could not replace it unnoticed."""
     there = os.stat(target)
     if there.st_nlink > 1:
         return False
@@ -132,7 +132,7 @@ def _make_alike(partial: Path, target: Path) -> bool:
         mine = os.stat(partial)
         if (mine.st_uid, mine.st_gid) != (there.st_uid, there.st_gid):
             return False
-    with suppress(OSError):  # of what some file systems do not know
+    with suppress(OSError):  # some file systems lack some of it
         shutil.copystat(target, partial)
     os.chmod(partial, stat.S_IMODE(there.st_mode))
     os.utime(partial)
@@ -141,7 +141,7 @@ def _make_alike(partial: Path, target: Path) -> bool:
 
 @contextmanager
 def _in_place(target: Path) -> Iterator[FileIO]:
-    """Write in place, one at a time; on failure what was there is put back."""
+    """Write in place, one writer at a time; on failure restore the old contents."""
     with _IN_PLACE, FileIO(target, "r+") as file:
         with suppress(ImportError, OSError):  # Windows, and file systems without locks
             import fcntl

@@ -25,12 +25,12 @@ def write_case_folder(scenarios: Iterable[Scenario], folder: Path, file_format: 
     folder itself.
 
     Args:
-        scenarios: what to write, each with a name of its own that can be a file's.
+        scenarios: what to write; their names must differ and be valid file names.
         folder: must not exist yet, or be empty; it may be the current one, or a link to one.
-        file_format: of the files.
+        file_format: format of the files.
 
     Raises:
-        ConfigError: if the folder holds something or cannot be made, or there is no such format.
+        ConfigError: if the folder is not empty or cannot be made, or there is no such format.
         ScenarioError: if the format cannot express a scenario.
     """
     if file_format not in get_args(CaseFormat):

@@ -1,4 +1,4 @@
-"""Folders of benchmark cases, with the results that others have reached on them."""
+"""Folders of benchmark cases, with the results that other methods reached on them."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from mrta_zoo.wording import composed
 
 REFERENCE_FILE = "reference.csv"
 ALIKE = 0.8
-"""How much alike, from 0 to 1, names are of which one may be a misspelling of the other."""
+"""How similar, from 0 to 1, two names must be for one to pass as a misspelling of the other."""
 LISTED = 3
-"""Names that are listed before the others are only counted."""
+"""The most names that are listed; others are only counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ def read_cases(folder: StrPath, tell: Callable[[str], None] | None = None) -> li
     """All cases of a folder in natural order of their names (``a2`` before ``a10``).
 
     Cases are TAPTC task files ``group*/*.txt`` (agent files in ``agent/``), and ``*.json`` and ``*.csv``
-    scenarios in the folder itself, in small or capital letters. JSON and CSV files of this package that are no
+    scenarios in the folder itself, in lower or upper case. JSON and CSV files of this package that are not
     scenarios, such as plans and their schedules, are skipped. If there is a ``reference.csv`` with columns
     ``case,tasks,robots`` and one for each method, its whole numbers of completed tasks become the references; rows of
     other cases are skipped, and a cell may be empty.
@@ -93,7 +93,7 @@ def read_cases(folder: StrPath, tell: Callable[[str], None] | None = None) -> li
 
 
 def _read_scenarios(paths: Iterable[Path]) -> dict[str, Scenario]:
-    """The scenarios in these files by their names; files of this package that hold none are skipped."""
+    """The scenarios in these files by name; files of this package that hold none are skipped."""
     sources: dict[str, Path] = {}
     scenarios: dict[str, Scenario] = {}
     for path in paths:
@@ -116,19 +116,19 @@ def _read_scenarios(paths: Iterable[Path]) -> dict[str, Scenario]:
 
 
 def _files_of_cases(root: Path) -> list[Path]:
-    """Files that may hold a case or the reference table, hidden ones left out."""
+    """Files that may hold a case or the reference table, without hidden ones."""
     entries = sorted(root.iterdir())
     groups = [entry for entry in entries if entry.name.lower().startswith("group") and os.path.isdir(entry)]
     found = [path for group in groups for path in sorted(group.iterdir()) if suffix_of(path) == ".txt"]
     for suffix in (".json", ".csv"):
         found += [path for path in entries if suffix_of(path) == suffix]
     found = [path for path in found if not path.name.startswith(".")]
-    # What leads nowhere is left to the reader, who says so; a pipe would keep it waiting.
+    # Broken links are left to the reader, which reports them; a pipe would keep it waiting.
     return [path for path in found if os.path.isfile(path) or not os.path.exists(path)]
 
 
 def _strangers(rows: Mapping[str, object], cases: Mapping[str, object]) -> str:
-    """What to say of rows of the reference table that match no case; nothing if it is just that of a larger folder."""
+    """A sentence about rows of the reference table that match no case; empty if the table is of a larger folder."""
     strange, without = [name for name in rows if name not in cases], [name for name in cases if name not in rows]
     if not strange or (not without and len(strange) > len(cases)):
         return ""
@@ -189,6 +189,6 @@ def read_reference(path: StrPath, scenarios: Mapping[str, Scenario]) -> dict[str
 
 
 def _natural(name: str) -> tuple[list[tuple[str, int, str]], str]:
-    """Sorts runs of digits by the number they write; by their text where that is equal."""
+    """A sort key: runs of digits count as numbers, and ties are settled by their text."""
     pieces = re.findall(r"([^0-9]*)([0-9]*)", name)
     return [(text, len(digits.lstrip("0")), digits.lstrip("0")) for text, digits in pieces], name

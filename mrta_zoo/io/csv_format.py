@@ -1,10 +1,10 @@
-"""Scenarios as one CSV table: a header row, then one row for each task and robot, and maybe one for the map.
+"""Scenarios as one CSV table: a header row, then one row per task and robot, and optionally one for the map.
 
-Columns, in any order, in small or capital letters: ``kind`` (task, robot, map or origin), ``x``, ``y``, ``deadline``
-and ``workload`` of tasks, ``capacity`` and ``speed`` (1 if empty) of robots, and optionally ``name`` (any text) and
-``id``. Where the ids of the tasks are each of 0..N-1 once, they are their numbers; otherwise rows count in order and
-the ids are names. The same holds for the robots. A map row gives the width as x and the height as y, an origin row the
-map's lowest x and y; what the map is without them, `mrta_zoo.io.parts.assemble` says.
+Columns, in any order, in lower or upper case: ``kind`` (task, robot, map or origin), ``x``, ``y``, ``deadline`` and
+``workload`` of tasks, ``capacity`` and ``speed`` (1 if empty) of robots, and optionally ``name`` (any text) and ``id``.
+If the ids of the tasks are 0..N-1, each once, they number the tasks; otherwise tasks are numbered in order of their
+rows, and the ids are names. The same holds for the robots. A map row gives the width as x and the height as y, an
+origin row the map's lowest x and y; `mrta_zoo.io.parts.assemble` says what the map is without them.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ KINDS = ("task", "robot", "map", "origin")
 COLUMNS = (*PLACE, *(each.name for who in get_args(Who) for each in quantities_of(who)))
 
 OTHERS = (("robot", "robot_name", "task"), ("case", "method", "completed"), ("update", "episodes", "completion"))
-"""Columns by which schedules, rows of measurements and histories of training are known."""
+"""Columns by which schedules, rows of measurements and training histories are recognised."""
 
 
 def read_csv_part(path: StrPath) -> Part:
@@ -75,7 +75,7 @@ def read_csv_part(path: StrPath) -> Part:
 
 
 def is_other_csv(path: Path) -> bool:
-    """Whether a CSV file is one of this package's that is no scenario, by the columns that it has."""
+    """Whether a CSV file, by its columns, is one of this package's other than a scenario."""
     if suffix_of(path) != ".csv":
         return False
     try:
@@ -128,7 +128,7 @@ def _check_header(where: str, header: list[str]) -> None:
 
 
 def _check_empty(where: str, kind: str, row: dict[str, str], quantities: Sequence[Quantity]) -> None:
-    """A value that its kind cannot have is a slip of columns more often than not."""
+    """Refuse a value that its kind of row cannot have: it usually belongs in another column."""
     own = (*PLACE, *(each.name for each in quantities), *(NAMING if quantities else ()))
     for column, cell in row.items():
         if cell and column not in own:

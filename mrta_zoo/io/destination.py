@@ -1,4 +1,4 @@
-"""Checks, before the work, that its results can be written."""
+"""Destinations of results: checks before the work that they can be written there."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ def check_destination(path: Path) -> None:
 
 
 def check_outputs(outputs: Mapping[str, Path | None], inputs: Mapping[str, Path | None]) -> None:
-    """Make sure, as far as can be told, that all outputs can be written, and none overwrites an input or another.
+    """Make sure, as far as can be told, that all outputs can be written and none overwrites an input or another output.
 
     Args:
         outputs: files to be written, by their flags; None for those that are not.
         inputs: files that are read, by what they are.
 
     Raises:
-        ConfigError: if one cannot, or does.
+        ConfigError: if an output cannot be written, or would overwrite an input or another output.
     """
     taken = {what: path for what, path in inputs.items() if path is not None}
     wanted = {flag: path for flag, path in outputs.items() if path is not None}
@@ -72,5 +72,5 @@ def _same_file(one: Path, other: Path) -> bool:
 def _takes_standard_output(path: Path) -> bool:
     try:
         return os.path.isfile(path) and os.path.samestat(os.stat(path), os.fstat(sys.stdout.fileno()))
-    except (AttributeError, OSError, ValueError):  # it is closed, or no file of the system's
+    except (AttributeError, OSError, ValueError):  # it is closed, or not a file of the system
         return False

@@ -1,4 +1,4 @@
-"""Scenarios in any of the known formats, told apart by the file's suffix: JSON, CSV, or else TAPTC text."""
+"""Scenario files in any known format, told apart by suffix: JSON, CSV, or else TAPTC text."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def read_scenario(path: StrPath, agents: StrPath | None = None) -> Scenario:
             too, and the agent file of a TAPTC task file is looked for where the published cases have it.
 
     Raises:
-        ScenarioError: with one sentence that names the file, and the line or field, that is wrong.
+        ScenarioError: one sentence that names the file and the line or field that is wrong.
     """
     suffix = suffix_of(path)
     if suffix == ".json":
@@ -49,7 +49,8 @@ def write_scenario(scenario: Scenario, path: StrPath) -> None:
     """Write a scenario exactly, as the suffix says: ``.json``, ``.csv`` or, for TAPTC, ``.txt``.
 
     A TAPTC task file gets its agent file in the folder ``agent`` beside it, under the same name. CSV and
-    TAPTC hold no scenario name; the file's is taken when read. Files are written through `atomic.replacing`.
+    TAPTC hold no scenario name: when read, the scenario is named after the file. Files are written through
+    `atomic.replacing`.
 
     Raises:
         ScenarioError: if the format cannot express the scenario or the file cannot be written.

@@ -27,7 +27,7 @@ Name = Annotated[str, Meta(min_length=1)] | int
 class MapJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Size of the map in distance units, and its lowest x and y.
 
-    Without these it begins at 0 and 0 or, if it would not hold every place then, at their least whole x and y.
+    Without x and y it begins at (0, 0) or, if the places do not suit that, at their smallest whole x and y.
     """
 
     width: Positive
@@ -37,7 +37,7 @@ class MapJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def _row_json(title: str, description: str, who: Who) -> type[msgspec.Struct]:
-    """The form of a task or robot: a place, the quantities of the field table, a name and an id."""
+    """The JSON form of a task or robot: a place, the quantities of the field table, a name and an id."""
     quantities = [
         (each.name, Positive if each.positive else NonNegative, *(() if each.default is None else (each.default,)))
         for each in quantities_of(who)
@@ -67,13 +67,13 @@ else:
         "TaskJson",
         """One task: its place, the latest finish that counts, the work to be done, its name, and its id.
 
-    Where the ids are each of 0..N-1 once they number the tasks; otherwise they are names of those that have no name.
+    If the ids are 0..N-1, each once, they number the tasks; otherwise they name the tasks that have no name.
     """,
         "task",
     )
     RobotJson = _row_json(
         "RobotJson",
-        "One robot: its start, its work and its way per time unit, its name, and its id, as those of tasks.",
+        "One robot: its start, its work and its distance per time unit, its name, and its id, as for tasks.",
         "robot",
     )
 
@@ -90,7 +90,7 @@ class ScenarioJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def read_json_part(path: StrPath) -> Part:
-    """What a JSON scenario file says; without a name the scenario is called by the file's.
+    """What a JSON scenario file says; a scenario without a name is named after the file.
 
     Raises:
         ScenarioError: if it is missing or malformed.
@@ -133,7 +133,7 @@ def _text(name: Name | None) -> str:
 
 
 def is_other_json(path: Path) -> bool:
-    """Whether a JSON file is one of this package's that says itself to be no scenario, such as a plan."""
+    """Whether a JSON file says that it is one of this package's other than a scenario, such as a plan."""
     kind = json_kind(path)
     return kind.startswith("mrta_zoo.") and kind != "mrta_zoo.scenario"
 

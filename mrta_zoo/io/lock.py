@@ -1,4 +1,4 @@
-"""Folders that only one process at a time writes to."""
+"""Locks on folders, so that only one process at a time writes to them."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from mrta_zoo.errors import ConfigError
 def lock_folder(folder: Path) -> FileLock:
     """Keep other processes out of a folder until the lock that is returned is released, or this process ends.
 
-    Needs filelock, as the extras `torch` and `report` bring it.
+    Needs filelock, which the extras `torch` and `report` install.
 
     Args:
         folder: exists; this process may lock it several times.
 
     Raises:
-        ConfigError: if another process has it.
+        ConfigError: if another process has locked it.
         OSError: if it cannot be written to.
     """
     lock = FileLock(folder / ".lock", is_singleton=True)

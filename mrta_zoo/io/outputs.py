@@ -15,8 +15,8 @@ from mrta_zoo.errors import ConfigError, MrtaError
 class Outputs:
     """Writes one result after the other; failures are reported at the end, when all else is written and printed.
 
-    What cannot be written to its place, because the disk is full or the folder has gone, is written to a new temporary
-    folder.
+    A result that cannot be written to its place, because the disk is full or the folder has gone, is written to a new
+    temporary folder.
 
     >>> with Outputs() as outputs:
     ...     outputs.write("plan", Path("plan.json"), lambda path: write_plan(plan, path))
@@ -34,9 +34,9 @@ class Outputs:
         """Write a result.
 
         Args:
-            what: what the result is called.
+            what: the name of the result.
             path: its place.
-            write: writes it to the path that it is given.
+            write: writes it to the path given.
 
         Returns:
             Where it was written; None if nowhere.
@@ -46,9 +46,9 @@ class Outputs:
         except (MrtaError, OSError) as error:
             place = write_elsewhere(path, write)
             instead = f"; it is in {place} instead" if place else ""
-            self._problems.append(ConfigError(f"{_told(error, path)}{instead}"))
+            self._problems.append(ConfigError(f"{_complaint(error, path)}{instead}"))
             return place
-        except Exception as error:  # a fault of ours, which must not cost what comes after it
+        except Exception as error:  # a bug of ours, which must not cost later results
             self._problems.append(error)
             return None
         self.written.append(f"{what} written to {path}")
@@ -65,11 +65,11 @@ class Outputs:
 
 
 def write_elsewhere(path: Path, write: Callable[[Path], object]) -> Path | None:
-    """Write something that could not be written to its place to a new temporary folder.
+    """Write a result that could not be written to its place to a new temporary folder.
 
     Args:
         path: its place, whose name it keeps.
-        write: writes it to the path that it is given.
+        write: writes it to the path given.
 
     Returns:
         Where it was written; None if it cannot be written there either.
@@ -85,7 +85,7 @@ def write_elsewhere(path: Path, write: Callable[[Path], object]) -> Path | None:
     return None
 
 
-def _told(error: MrtaError | OSError, path: Path) -> str:
+def _complaint(error: MrtaError | OSError, path: Path) -> str:
     if isinstance(error, MrtaError):
         return str(error)
     return f"{path} cannot be written: {(error.strerror or str(error)).lower()}"

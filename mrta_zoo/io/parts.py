@@ -1,4 +1,4 @@
-"""What one file says of a scenario, before the task file and the agent file are put together."""
+"""Parts of a scenario: what one file says of it, before a task file and an agent file are put together."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ class Row:
     """One task or robot as read.
 
     Attributes:
-        where: it stands: "file, line 3".
+        where: its place in the file: "file, line 3".
         x: its place, or where it starts.
         y: likewise.
         values: its quantities, see `mrta_zoo.scenario.QUANTITIES`; those with a default may be missing.
-        name: what people call it, maybe nothing.
+        name: its name; empty if it has none.
     """
 
     where: str
@@ -40,7 +40,7 @@ class Row:
 
 
 class MapRow(NamedTuple):
-    """The map as read: where it stands, its size, and its lowest x and y, NaN if not said."""
+    """The map as read: its place in the file, its size, and its lowest x and y, NaN if not given."""
 
     where: str
     width: float
@@ -55,11 +55,11 @@ class Part:
 
     Attributes:
         path: the file.
-        tasks: its tasks, maybe none.
-        robots: its robots, maybe none.
-        map: its map, None if it names none.
+        tasks: its tasks, if any.
+        robots: its robots, if any.
+        map: its map; None if it gives none.
         name: the scenario's name.
-        num_robots: the number of robots a task file promises, None if it is silent.
+        num_robots: the number of robots that a task file announces; None if it announces none.
     """
 
     path: str
@@ -71,12 +71,12 @@ class Part:
 
 
 def assemble(main: Part, agents: Part | None) -> Scenario:
-    """The scenario of a file that has all, or of a file with tasks and another with the robots.
+    """The scenario in one file, or in a file with the tasks and another with the robots.
 
-    Without a map in either file it is `mrta_zoo.map.square_around` all places.
+    If neither file gives a map, it is `mrta_zoo.map.square_around` all places.
 
     Raises:
-        ScenarioError: if something is missing or said twice, a number is too small or large, or a place is outside
+        ScenarioError: if something is missing or given twice, a number is too small or large, or a place is outside
             the map.
     """
     check_name(main.name, main.path, "the scenario's name", ScenarioError)
@@ -105,8 +105,8 @@ def assemble(main: Part, agents: Part | None) -> Scenario:
         for letter, value in (("x", row.x), ("y", row.y)):
             _check_number(row.where, letter, value, -LARGEST, COORDINATE)
     places = np.array([(row.x, row.y) for row in (*main.tasks, *agents.robots)])
-    said = _map_of(main, agents)
-    size, origin = (said[1:3], said[3:]) if said else square_around(places)
+    given = _map_of(main, agents)
+    size, origin = (given[1:3], given[3:]) if given else square_around(places)
     try:
         return Scenario(
             task_xy=places[: len(main.tasks)],
@@ -125,7 +125,7 @@ def assemble(main: Part, agents: Part | None) -> Scenario:
 
 
 def _map_of(main: Part, agents: Part) -> MapRow | None:
-    """What either file says of the map."""
+    """The map that either file gives."""
     for each in filter(None, (main.map, agents.map)):
         for what in ("width", "height"):
             _check_number(each.where, what, getattr(each, what), SMALLEST, f"a number > 0{BOUNDS}")
@@ -146,7 +146,7 @@ def _map_text(row: MapRow) -> str:
 
 
 def _names(rows: Sequence[Row], who: Who) -> tuple[str, ...]:
-    """The names of rows, of which all have one or none has."""
+    """The names of the rows, which must either all have one or none."""
     if not any(row.name for row in rows):
         return ()
     first: dict[str, Row] = {}
@@ -174,17 +174,17 @@ def _check_number(where: str, what: str, value: float, least: float, expected: s
 
 
 def place_in_file(where: str) -> str:
-    """Where in its file something stands: "line 3" of "file, line 3"."""
+    """The place within the file: "line 3" of "file, line 3"."""
     return re.split(r"[:,] ", where)[-1]
 
 
 def in_id_order(rows: Sequence[tuple[str, Row]], what: str) -> tuple[Row, ...]:
-    """Rows with the ids they came with: sorted by them if they are each of 0..N-1 once, otherwise called by them.
+    """Rows, given with their ids: sorted by the ids if these are 0..N-1, each once, otherwise named after them.
 
-    "01" is no such number, but a name. Rows that have a name keep it.
+    "01" is a name, not such a number. Rows that have a name keep it.
 
     Raises:
-        ScenarioError: for an id met before, or missing where others have one.
+        ScenarioError: if an id is repeated, or missing where others have one.
     """
     ids = [given for given, _ in rows]
     if not any(ids):
@@ -206,12 +206,12 @@ def in_id_order(rows: Sequence[tuple[str, Row]], what: str) -> tuple[Row, ...]:
 
 
 def task_rows(scenario: Scenario) -> list[dict[str, Any]]:
-    """The tasks of a scenario as files hold them: name, if they have names, x, y and the quantities that are said."""
+    """The tasks of a scenario as files hold them: name, if they have names, x, y and their quantities."""
     return _rows(scenario.task_names, scenario.task_xy, scenario.said("task"))
 
 
 def robot_rows(scenario: Scenario) -> list[dict[str, Any]]:
-    """The robots likewise."""
+    """The robots of a scenario, likewise."""
     return _rows(scenario.robot_names, scenario.robot_xy, scenario.said("robot"))
 
 

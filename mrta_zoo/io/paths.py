@@ -1,4 +1,4 @@
-"""Paths as people give them: what their suffix says, where they lead, and what is none."""
+"""Paths given by users: their suffixes, their spelling on other systems, and URLs given by mistake."""
 
 from __future__ import annotations
 
@@ -10,18 +10,18 @@ from pathlib import Path
 from mrta_zoo.errors import MrtaError
 from mrta_zoo.wording import composed
 
-_URL = re.compile(r"[a-z][a-z0-9+.-]+:/", re.IGNORECASE)  # of a drive there is one letter
+_URL = re.compile(r"[a-z][a-z0-9+.-]+:/", re.IGNORECASE)  # a drive has only one letter
 
 
 def suffix_of(path: str | os.PathLike[str]) -> str:
-    """The suffix in small letters, such as ".csv"; "" if there is none."""
+    """The suffix in lower case, such as ".csv"; "" if there is none."""
     return Path(path).suffix.lower()
 
 
 def as_spelt(path: Path) -> Path:
-    """`path` or, if nothing is there, what its folder holds under the same name in capital letters or other accents.
+    """`path` or, if nothing is there, the first entry of its folder that differs only in case or encoding of accents.
 
-    Other systems write names so; which of several it is, is settled by their order.
+    Other systems spell file names like that.
     """
     if os.path.lexists(path):
         return path
@@ -33,7 +33,7 @@ def as_spelt(path: Path) -> Path:
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder, if it is not there, and those above it; where a link leads to, if `path` is one.
+    """Make a folder and those above it, unless they exist; if `path` is a link, the folder that it leads to.
 
     Raises:
         OSError: if it cannot be made.
@@ -42,7 +42,7 @@ def make_folder(path: Path) -> None:
 
 
 def check_no_url(path: str | os.PathLike[str], error: type[MrtaError]) -> None:
-    """Refuse an address on the web or the like, which `pathlib` would take for a path with a slash too many.
+    """Refuse a URL, which `pathlib` would take for a path with a slash too many.
 
     Raises:
         error: if it is one.

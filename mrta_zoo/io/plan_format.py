@@ -22,7 +22,7 @@ from mrta_zoo.wording import composed
 class VisitJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """One stop of a robot: when it arrives, when it finishes, and whether that met the deadline.
 
-    The names of the task and the robot are there if they have one.
+    The names of the task and the robot are given if they have one.
     """
 
     task: Index
@@ -46,7 +46,7 @@ class LeftOutJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class ScoreJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What the plan achieves: completed of all tasks, their share, cost (Eq. 1), distance and makespan."""
+    """What the plan achieves: tasks completed, of how many, their share, cost (Eq. 1), distance and makespan."""
 
     completed: Index
     tasks: Index
@@ -57,9 +57,9 @@ class ScoreJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class PlanJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A plan file: for each robot its tasks in order, for people its schedule and score, and what no plan exceeds.
+    """A plan file: each robot's tasks in order, a bound that no plan exceeds, and for people the schedule and score.
 
-    What is left out is for people, too, as are names: tasks and robots are known by their numbers, from 0.
+    The tasks left out and all names are for people, too: tasks and robots are identified by their numbers, from 0.
     """
 
     format: Literal["mrta_zoo.plan"]
@@ -74,7 +74,7 @@ class PlanJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def read_plan(path: StrPath) -> Plan:
-    """The plan of a JSON plan file. What is there for people is checked for its form only, and ignored.
+    """The plan in a JSON plan file. The parts for people are only checked for their form, then ignored.
 
     Raises:
         PlanError: if the file is missing or malformed.
@@ -86,7 +86,7 @@ def read_plan(path: StrPath) -> Plan:
 def write_plan(
     plan: Plan, path: StrPath, score: Score | None = None, left_out: Sequence[LeftOut] | None = None
 ) -> None:
-    """Write a plan, one line per route, and for people its score, its schedule and what it leaves out.
+    """Write a plan, one line per route, and for people its score, its schedule and the tasks it leaves out.
 
     Args:
         plan: the plan.

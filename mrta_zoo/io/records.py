@@ -1,4 +1,4 @@
-"""Dataclasses as the rows of a CSV file, one column per field: text, numbers and truth values."""
+"""Dataclasses as the rows of a CSV file, one column per field: text, numbers and booleans."""
 
 from __future__ import annotations
 

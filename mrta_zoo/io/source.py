@@ -1,4 +1,4 @@
-"""Text of an input file, the numbers in it, and where in it something stands."""
+"""Input files: their text, the numbers and names in it, and how error messages show them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mrta_zoo.wording import is_utf8
 StrPath = str | os.PathLike[str]
 
 MAX_BYTES = 64 * 2**20
-"""More than any scenario of a sensible size; it keeps a device file from being read without end."""
+"""More than any scenario of a sensible size; it keeps a device file from being read forever."""
 
 # What `float` accepts is wider: "1_0", "infinity", "nan", digits of other scripts.
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
@@ -67,7 +67,7 @@ def decode(data: bytes, source: str, error: type[MrtaError]) -> str:
         error: what to raise.
 
     Raises:
-        error: if they are no such text.
+        error: if they are not such text.
     """
     try:
         text = data.decode("utf-8-sig")
@@ -102,7 +102,7 @@ def write_text(text: str, path: StrPath, error: type[MrtaError]) -> None:
 
 
 def number(text: str, where: str, what: str, least: float, error: type[MrtaError], strict: bool = False) -> float:
-    """The number written as `text`, which must be finite and >= `least` (> if `strict`), which may be -infinity.
+    """The number written as `text`, which must be finite and >= `least` (> if `strict`); `least` may be -infinity.
 
     Raises:
         error: if it is not; the message starts with `where` and calls the value `what`.
@@ -118,7 +118,7 @@ def count(text: str, where: str, what: str, error: type[MrtaError]) -> int:
     """The whole number >= 0 written as `text`, in decimal digits.
 
     Raises:
-        error: if it is none, or has more than 18 digits.
+        error: if it is not one, or has more than 18 digits.
     """
     if not _COUNT.fullmatch(text) or len(text) > 18:
         raise error(f"{where}: {what} is {shown(text)}; expected a whole number >= 0")
@@ -126,10 +126,10 @@ def count(text: str, where: str, what: str, error: type[MrtaError]) -> int:
 
 
 def check_name(name: str, where: str, what: str, error: type[MrtaError]) -> None:
-    """Refuse a name that cannot be written to a file, or would steer the terminal it is printed on.
+    """Refuse a name that cannot be written to a file, or would control the terminal it is printed on.
 
     Raises:
-        error: if the name is not UTF-8, as names of files need not be, or holds control characters.
+        error: if the name is not UTF-8, as a file name may not be, or holds control characters.
     """
     if not is_utf8(name):
         raise error(f"{where}: {what} is {shown(name)}; expected text in UTF-8")

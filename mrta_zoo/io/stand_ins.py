@@ -1,15 +1,15 @@
-"""What lies where a file should be: a pointer of Git LFS, a web page, or nothing."""
+"""Stand-ins for files: pointers of Git LFS, web pages, and empty files."""
 
 from __future__ import annotations
 
 import os
 
 HEAD = 1024
-"""Bytes at the beginning of a file that tell."""
+"""Bytes at the beginning of a file that are looked at."""
 
 
 def stand_in(data: bytes) -> str:
-    """What these bytes are instead of a file's, as the rest of a sentence that begins with its name; "" if nothing.
+    """What these bytes are instead of the file, as the rest of a sentence that begins with its name; "" if they are it.
 
     >>> stand_in(b"version https://git-lfs.github.com/spec/v1")
     'is a pointer of Git LFS; expected the file itself, which `git lfs pull` fetches'
@@ -27,7 +27,7 @@ def why_unreadable(path: str | os.PathLike[str], otherwise: object) -> str:
 
     Args:
         path: the file.
-        otherwise: what there is to say if it is what it should be.
+        otherwise: the reason to give if the file is no stand-in.
     """
     try:
         with open(path, "rb") as file:

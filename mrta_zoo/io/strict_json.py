@@ -121,7 +121,7 @@ def _sentence(path: StrPath, problem: str, document: Any, kind: type[msgspec.Str
 
 
 def _schema_at(kind: type[msgspec.Struct], steps: Sequence[str]) -> dict[str, Any]:
-    """The JSON Schema of what stands at a place in a document."""
+    """The JSON Schema of the value at a place in a document."""
     (schema,), parts = msgspec.json.schema_components([kind])
 
     def resolved(schema: dict[str, Any]) -> dict[str, Any]:
@@ -142,13 +142,13 @@ def _format_of(kind: type[msgspec.Struct]) -> str:
 
 
 def schema_text(document: type[msgspec.Struct]) -> str:
-    """The JSON Schema of a kind of file, as it lies beside this module."""
+    """The JSON Schema of a kind of file, as stored beside this module."""
     schema = {"$schema": "https://json-schema.org/draft/2020-12/schema", **msgspec.json.schema(document)}
     return json.dumps(schema, indent=2) + "\n"
 
 
 def write_document(document: dict[str, Any], path: StrPath, error: type[MrtaError]) -> None:
-    """Write JSON that people can read, too: each element of a top-level list has a line of its own.
+    """Write JSON that people can read, too: each element of a top-level list is on its own line.
 
     Raises:
         error: if the file cannot be written, or a value cannot be read back.

@@ -1,4 +1,4 @@
-"""CSV files as tables of text that know where each row stands."""
+"""CSV tables as rows of text, each with its place in the file."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from mrta_zoo.wording import counted
 
 
 def read_table(path: StrPath, error: type[MrtaError]) -> list[tuple[str, list[str]]]:
-    """Where each row of a CSV file stands, and its cells; at least the header.
+    """The place and the cells of each row of a CSV file; at least the header.
 
     Empty rows and columns, as spreadsheets leave them, are skipped; every row has as many cells as
-    the header, but for empty ones at its end.
+    the header, or fewer if those at its end are empty.
 
     Args:
         path: the file.
@@ -48,7 +48,7 @@ def read_table(path: StrPath, error: type[MrtaError]) -> list[tuple[str, list[st
 
 
 def columns_in_use(rows: Sequence[Sequence[str]]) -> list[list[str]]:
-    """The rows without the columns in which nothing but blanks stands; those that end too early still do."""
+    """The rows without blank columns; rows that were too short still are."""
     used = sorted({index for row in rows for index, cell in enumerate(row) if cell.strip()})
     return [[row[index] for index in used if index < len(row)] for row in rows]
 

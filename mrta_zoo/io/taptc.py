@@ -1,9 +1,9 @@
 """Text files of the TAPTC benchmark (Mitiche, Boughaci, Gini 2019): one for the tasks, one for the agents.
 
 Task file: ``m dx dy`` or ``n m dx dy`` (m tasks, n agents, map dx x dy), then m lines
-``id x y workload deadline``. Agent file: ``n dx dy``, then n lines ``id x y capacity``. Where the ids are each of
-0..N-1 once, in any order, they number the tasks or robots; otherwise these are numbered by their lines, and the ids are
-names. Where the map lies, if not at 0 and 0, `mrta_zoo.map.map_origin_for` says. Every robot has speed 1.
+``id x y workload deadline``. Agent file: ``n dx dy``, then n lines ``id x y capacity``. If the ids are 0..N-1, each
+once, in any order, they number the tasks or robots; otherwise these are numbered in order of their lines, and the ids
+are names. `mrta_zoo.map.map_origin_for` says where the map begins. Every robot has speed 1.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def find_agent_file(task_path: StrPath) -> Path:
     """The agent file that belongs to a task file, by the layout of the published cases.
 
     For ``DIR/group1/r11a2i00.txt`` it is the first that exists of ``r11a2i00.txt`` and ``a2i00.txt`` in
-    ``DIR/agent/``, then in ``DIR/group1/agent/``, in small or capital letters.
+    ``DIR/agent/``, then in ``DIR/group1/agent/``, in lower or upper case.
 
     Raises:
         ScenarioError: if none of them exists.
@@ -114,12 +114,11 @@ def read_agent_part(path: StrPath) -> Part:
 
 
 def write_taptc(scenario: Scenario, task_path: StrPath, agent_path: StrPath) -> None:
-    """Write a scenario as a task file and an agent file, exactly; its name is then the task file's.
+    """Write a scenario exactly, as a task file and an agent file; its name is not kept, but read from the task file's.
 
     Raises:
-        ScenarioError: if a speed is not 1, a name is no single word or a number that would be read as a task's or
-            robot's, or the map lies where it would not be found again, all of which the format cannot express; or if
-            a file cannot be written.
+        ScenarioError: if the format cannot express the scenario (a speed is not 1, a name holds blanks, names would be
+            read as numbers, or the map begins where a reader would not expect it), or a file cannot be written.
     """
     for each in QUANTITIES:
         for index, value in enumerate(getattr(scenario, each.name).tolist()):
@@ -151,7 +150,7 @@ def write_taptc(scenario: Scenario, task_path: StrPath, agent_path: StrPath) -> 
 
 
 def _ids(names: tuple[str, ...], count: int, who: str, path: StrPath) -> list[str]:
-    """What the lines of the tasks, or of the robots, begin with."""
+    """The first fields of the lines of the tasks, or of the robots."""
     numbers = [str(index) for index in range(count)]
     if set(names) == set(numbers):
         raise ScenarioError(
@@ -168,7 +167,7 @@ def _ids(names: tuple[str, ...], count: int, who: str, path: StrPath) -> list[st
 
 
 def _lines(path: StrPath) -> list[tuple[str, list[str]]]:
-    """Where each line stands and its fields, without blank lines; at least one line."""
+    """The place and the fields of each line that is not blank; at least one line."""
     lines = enumerate(read_text(path, ScenarioError).split("\n"), start=1)
     return [(f"{path}, line {index}", fields) for index, line in lines if (fields := line.split())]
 

@@ -20,7 +20,7 @@ Probability = Annotated[float, Meta(ge=0, le=1)]
 
 
 class DecisionJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One decision: the task taken, null if the robot stays for good. Time and robot are for people, and checked.
+    """One decision: the task taken, null if the robot stays for good. Time and robot are for people; they are checked.
 
     Probabilities are pairs of a task and its probability; advice is what the policy would have taken where
     somebody else decided.
@@ -52,11 +52,11 @@ class TraceJson(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def read_trace(path: StrPath) -> Trace:
-    """The trace of a JSON trace file. The decisions are replayed, so that each is known to be legal.
+    """The trace in a JSON trace file. Every decision is made again, so that each is known to be legal.
 
     Raises:
-        PlanError: if the file is missing or malformed, a robot could not choose what it says, or it names another
-            robot or time than the rules do.
+        PlanError: if the file is missing or malformed, a robot could not choose what it says, or a robot or time in it
+            contradicts the rules.
         ScenarioError: if the scenario in it breaks a rule of the problem.
     """
     data = read_document(path, TraceJson, PlanError)
