@@ -254,7 +254,7 @@ class Mixture:
         if len(self.weights) != len(self.generators):
             raise ConfigError(
                 f"weights has {counted(len(self.weights), 'entry', 'entries')}; expected "
-                f"{len(self.generators)}, one a generator"
+                f"{len(self.generators)}, one for each generator"
             )
         if not all(is_number(weight) and weight >= 0 for weight in self.weights) or sum(self.weights) == 0:
             raise ConfigError(f"weights is {self.weights}; expected finite numbers >= 0, not all 0")

@@ -26,7 +26,7 @@ from mrta_zoo.scenario import FloatArray, Scenario
 
 MOST_MARGIN = 0.25
 """The frame is the map where no margin around the places is wider than this share of their extent."""
-ODD = 10.0
+OUTLIER = 10.0
 """A capacity or speed is an outlier if it is more than this many times the next smaller one, and beyond `ENOUGH`."""
 ENOUGH = 50.0
 """Crossings of the frame in the time T, and largest workloads done in the time of a crossing: being faster or stronger
@@ -164,15 +164,17 @@ def slack_time(scenario: Scenario, extent: FloatArray, useful: BoolArray, work: 
 
 
 def usual(values: FloatArray, enough: float) -> float:
-    """The largest of some positive numbers below the outliers: beyond `enough`, and `ODD` times the next smaller one.
+    """The largest of some positive numbers, short of the first outlier.
+
+    A number is an outlier if it is more than `OUTLIER` times the next smaller one, and more than `enough`.
 
     Args:
         values: (K,) at least one number > 0.
         enough: > 0; more than that hardly makes a difference.
     """
     ordered = np.sort(values)
-    odd = (ordered[1:] > ODD * ordered[:-1]) & (ordered[1:] > enough)
-    return float(ordered[odd.argmax()] if odd.any() else ordered[-1])
+    outliers = (ordered[1:] > OUTLIER * ordered[:-1]) & (ordered[1:] > enough)
+    return float(ordered[outliers.argmax()] if outliers.any() else ordered[-1])
 
 
 def work_scale(scenario: Scenario, capacity: float) -> float:

@@ -1,4 +1,4 @@
-"""Looking into episodes: recording them, stepping through them, and finding where two of them part."""
+"""Debugging of episodes: record them, step through them, and find where two of them part."""
 
 from mrta_zoo.debug.advisors import make_advisor
 from mrta_zoo.debug.comparison import Comparison, compare

@@ -1,4 +1,4 @@
-"""What an advisor says at each decision of an episode: asked when it is wanted, and kept while the choices last."""
+"""Advice: what an advisor says at each decision of an episode, asked on demand and kept until a choice changes."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from mrta_zoo.trace import Choice, Trace, after, make
 
 
 class Advice:
-    """The advice for one episode, in which somebody goes back and forth and may choose otherwise.
+    """The advice for one episode, in which a user goes back and forth and may choose otherwise.
 
     Args:
-        trace: choices that there are already, with the advice that was given then.
-        advisor: is asked about the others; None for nobody.
+        trace: the choices made so far, with the advice given at the time.
+        advisor: asked at all other decisions; None for no advice there.
     """
 
     def __init__(self, trace: Trace, advisor: Advisor | None) -> None:
         self._advisor = advisor
-        # By decision: the advice, and the state in which the decision finds the advisor.
+        # By decision: the advice, and the advisor's state before it.
         self._advice = {index: _advice_in(choice) for index, choice in enumerate(trace.choices)}
         self._states: dict[int, Any] = {} if advisor is None else {0: advisor.begin()}
 
@@ -29,8 +29,8 @@ class Advice:
 
         Args:
             position: the decision, counted from 0.
-            mission: as it stands before it.
-            choices: those made before it, and maybe more.
+            mission: as it stands before the decision.
+            choices: those made before it, and perhaps later ones.
         """
         if position not in self._advice:
             if mission.done or self._advisor is None:
@@ -39,12 +39,12 @@ class Advice:
         return self._advice[position]
 
     def forget_after(self, position: int) -> None:
-        """Forget what was said at later decisions, as something else is chosen at this one."""
+        """Forget the advice at later decisions, as the choice at this one has changed."""
         self._advice = {index: advice for index, advice in self._advice.items() if index <= position}
         self._states = {index: state for index, state in self._states.items() if index <= position + 1}
 
     def _ask(self, advisor: Advisor, position: int, mission: Mission, choices: Sequence[Choice]) -> None:
-        """Ask about this decision; an advisor that remembers, first about those that it was not asked about."""
+        """Ask about this decision; an advisor with memory is first asked about the earlier ones that it missed."""
         if advisor.memoryless:
             self._advice[position], state = advisor.advise(mission, self._states[max(self._states)])
             self._states = {0: state}
@@ -59,5 +59,5 @@ class Advice:
 
 
 def _advice_in(choice: Choice) -> Choice:
-    """What was said at a decision that was recorded."""
+    """The advice given at a recorded decision."""
     return choice if choice.advice is None else Choice(choice.advice, choice.probabilities)

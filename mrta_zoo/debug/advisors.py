@@ -1,8 +1,8 @@
-"""Any method as something to ask, at any moment of a mission, what it would do now.
+"""Advisors: any method, to be asked at any moment of a mission what it would do now.
 
-Missions are gone through back and forth, so an advisor keeps no state of its own: it is handed the state in which the
-decision finds its policy, and hands back the one in which it leaves it. Policies that draw at random so give the same
-advice whenever a decision is come back to.
+Users go back and forth in a mission, so an advisor keeps no state of its own: it is given its policy's state before a
+decision and returns the state after it. So a policy that draws at random gives the same advice whenever a decision is
+revisited.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import TOLERANCE, Choice, tightest_rule
 
 DIGITS = 6
-"""Of a probability, and of what the likeliest task's lacks to 1."""
+"""Significant digits of a probability, and of the difference between the largest and 1."""
 
 
 class Thought(Protocol):
-    """What a policy with probabilities made of an observation."""
+    """A policy's decision, with probabilities."""
 
     @property
     def action(self) -> int:
@@ -57,9 +57,9 @@ class Advisor(ABC):
         method: its name.
         mask_rule: the rule that it decides under.
         decode: how a learned policy chooses; empty if there is nothing to say.
-        seed: of all draws, None if none was given.
-        bound: as in `Plan`, if it is a plan that advises.
-        memoryless: whether its advice depends on the mission alone, so that it may be asked in any state it has left.
+        seed: of all random draws, None if none was given.
+        bound: as in `Plan`, if a plan advises.
+        memoryless: whether its advice depends on the mission alone, so that any earlier state of it will do.
     """
 
     method: str = ""
@@ -79,7 +79,7 @@ class Advisor(ABC):
 
         Args:
             mission: not over; not changed.
-            state: in which the decision finds the method. Left as it is.
+            state: the method's before the decision; not changed.
 
         Returns:
             The choice, and the state for the next decision.
@@ -90,11 +90,11 @@ class PolicyAdvisor(Advisor):
     """Asks a policy of the AEC loop, with its probabilities if it has some.
 
     Args:
-        policy: is asked through copies of its own: what `fork` gives if it has such a method, else deep ones. An
+        policy: asked only through copies: those its method `fork` makes if it has one, otherwise deep copies. An
             attribute ``memoryless = True`` says that it decides by the observation alone.
         method: its name.
         mask_rule: the rule that it decides under.
-        seed: which it was made with.
+        seed: the seed that it was made with.
     """
 
     def __init__(
@@ -114,7 +114,7 @@ class PolicyAdvisor(Advisor):
         """What the policy would do now, given what it went through before.
 
         Raises:
-            ActionError: if it gives no task's number.
+            ActionError: if its action is not the number of a task.
         """
         scenario, robot = mission.scenario, mission.actor
         if scenario not in self._observers:
@@ -131,15 +131,15 @@ class PlanAdvisor(Advisor):
     """Advises what a plan does next.
 
     The robot takes the first task of its route that nobody has taken and that it may choose; at the end of its route
-    it stays. As long as everybody follows, that is the plan.
+    it stays. As long as the advice is followed, the result is the plan.
 
     Args:
         scenario: what was planned.
         plan: the plan.
         mask_rule: by default the tightest that allows what the plan does.
         policy: a learned policy that made the plan: shows its probabilities, and decides once the plan has been left.
-        decode: how it made it.
-        seed: given to the method.
+        decode: how the policy made it.
+        seed: the seed given to the method.
 
     Raises:
         PlanError: if the plan does not fit the scenario.
@@ -179,7 +179,7 @@ class PlanAdvisor(Advisor):
 
 
 def make_advisor(scenario: Scenario, method: str | Policy | Solver | Plan, **options: Any) -> Advisor:
-    """Ask this method. Solvers plan now, once; policies will be asked at each decision.
+    """The advisor for a method. A solver plans once, now; a policy will be asked at each decision.
 
     Args:
         scenario: the mission.
@@ -209,7 +209,7 @@ def make_advisor(scenario: Scenario, method: str | Policy | Solver | Plan, **opt
 
 
 def _learned(scenario: Scenario, solver: LearnedSolver, seed: int | None) -> Advisor:
-    """A greedy policy is asked as it goes; otherwise it is the best of many missions that advises."""
+    """A greedy policy is asked at each decision; otherwise the plan that its decoding finds gives the advice."""
     policy, options = solver.policy, solver.options
     live = PolicyAdvisor(policy, policy.name, options.mask_rule or policy.info.mask_rule, seed)
     if options.decode == "greedy" and options.budget is None:
@@ -224,7 +224,7 @@ def _fork(policy: Policy) -> Policy:
 
 
 def _exact(probabilities: npt.NDArray[np.floating]) -> dict[int, float]:
-    """Those that are not 0, likeliest first. The likeliest has what the others leave: float32 may round that away."""
+    """The probabilities > 0, likeliest first. The largest is 1 minus the others, which float32 may round away."""
     values = probabilities.astype(np.float64)
     order = np.argsort(-values, kind="stable").tolist()
     exact = {task: float(f"{values[task]:.{DIGITS}g}") for task in order if values[task] > 0}

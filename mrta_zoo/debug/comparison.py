@@ -1,4 +1,4 @@
-"""Two methods on the same mission: where they part, what each does then, and what that costs."""
+"""Comparison of two methods on the same mission: where they part, what each does then, and what that costs."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Turn:
         robot: the robot.
         turn: which of its turns, from 0.
         tasks: what it takes in the first and in the second episode; None if it takes nothing more.
-        finish: when it is done with it; None likewise.
+        finish: when it finishes each; None likewise.
     """
 
     robot: int
@@ -50,10 +50,10 @@ class Fate:
 
     Attributes:
         task: the task.
-        deadline: of the task.
-        robots: who takes it in the first and in the second episode, None if nobody does.
-        finish: when it is done, None likewise.
-        completed: whether in time; true for one of the two.
+        deadline: its deadline.
+        robots: who takes it in the first and in the second episode; None if nobody does.
+        finish: when it is finished; None likewise.
+        completed: whether that is in time; true for one of the two.
     """
 
     task: int
@@ -72,9 +72,9 @@ class Comparison:
         tasks: number of its tasks.
         methods: names of the first and the second.
         scores: of their episodes.
-        parting: where they part; None if they do the same throughout, when the three that follow are empty.
-        disagreements: where the second would choose otherwise in the first one's place; what it would do after a plan
-            has been left is said in `advisors.PlanAdvisor`.
+        parting: where they part; None if they do the same throughout, and then the next three are empty.
+        disagreements: where the second, in the first one's place, would choose otherwise; `advisors.PlanAdvisor` says
+            what a plan advises once it has been left.
         turns: turns in which a robot takes different tasks.
         fates: tasks that only one of them completes.
         traces: their episodes.
@@ -97,7 +97,7 @@ def compare(
     second: str | Policy | Solver | Plan | Advisor,
     **options: Any,
 ) -> Comparison:
-    """Let two methods go through a mission, and find out where they part.
+    """Run two methods on a mission and find where they part.
 
     Args:
         scenario: the mission.

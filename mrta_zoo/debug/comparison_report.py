@@ -1,4 +1,4 @@
-"""A comparison as sentences and tables for people."""
+"""Report of a comparison: sentences and tables for people."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def report(found: Comparison, methods: tuple[str, str], rows: int) -> list[str |
     Args:
         found: the comparison.
         methods: the names of the two.
-        rows: the most rows of a table.
+        rows: the most rows that a table has.
     """
     first, second = methods
     shown = _Shown(found.traces[0].scenario)
@@ -108,14 +108,14 @@ def _parted(parting: Parting, methods: tuple[str, str], shown: _Shown) -> Group:
 
 
 def _costs(found: Comparison, parting: Parting, methods: tuple[str, str]) -> list[str]:
-    """What the other's choice would lead to, one line per method."""
+    """What the other method's choice would lead to, one line per method."""
     lines = []
     for index, method in enumerate(methods):
         task = parting.choices[1 - index].task
         instead, score = parting.otherwise[index], found.scores[index]
         choice = "staying there" if task is None else f"task {found.traces[0].scenario.task_name(task)} there"
         if instead is None:
-            lines.append(f"{method} may not have {choice}, by its mask rule")
+            lines.append(f"{method} with {choice}: its mask rule forbids that")
             continue
         lines.append(
             f"{method} with {choice} and then by itself: completed {instead.completed} "

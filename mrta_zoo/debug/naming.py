@@ -1,7 +1,6 @@
-"""How tasks and robots are named, on the screen and in commands.
+"""Names and numbers of tasks and robots, on the screen and in commands.
 
-Their names count, if they have any, and their numbers do, too, unless a name is itself a number: then nobody could tell
-which of the two was meant.
+Both are understood, unless a name is itself a number: then nobody could tell which of the two was meant.
 """
 
 from __future__ import annotations
@@ -72,7 +71,7 @@ def identify(text: str, who: str, names: Sequence[str]) -> int:
 
 
 def shortened(name: str, most: int, among: Sequence[str] = ()) -> str:
-    """A name cut to at most so many columns of a terminal, where it is like the others or else in the middle."""
+    """A name cut to at most `most` columns of a terminal, where it is like the others or else in the middle."""
     if cell_len(name) <= most:
         return name
     telling = shorter(name, lambda text: cell_len(text) <= most, among) if among else ""

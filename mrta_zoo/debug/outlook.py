@@ -1,4 +1,4 @@
-"""What a robot has before it: every task, when it would be done, why it may not be had, and who else could do it."""
+"""A robot's outlook: for every task, when it would be done, why it may not be chosen, and who else could do it."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from mrta_zoo.rules import MaskReason, Status, travel_time
 from mrta_zoo.show.view import Digits
 
 SortKey = Literal["rank", "distance", "finish", "slack", "deadline", "task"]
-"""By what tasks are listed: those that may be chosen first, then by the policy's probability or else by finish
-("rank"); or all of them by a column."""
+"""How tasks are sorted: those that may be chosen first, then by the policy's probability or else by finish ("rank"), or
+by a column. Only "task" does not put those that may be chosen first."""
 
 _AFTER = (MaskReason.CHOOSABLE, MaskReason.TOO_LATE, MaskReason.TAKEN, MaskReason.DEADLINE_PASSED)
 _REASONS, _STATUSES = list(MaskReason), list(Status)
@@ -23,23 +23,23 @@ _REASONS, _STATUSES = list(MaskReason), list(Status)
 
 @dataclass(frozen=True, slots=True)
 class Prospect:
-    """A task as one robot has it before it.
+    """A task as one robot sees it.
 
     Attributes:
         task: the task.
-        name: what people call it: its name, or its number.
-        distance: from where the robot is free next, in distance units.
+        name: its name, or else its number.
+        distance: from where the robot is next free, in distance units.
         travel: the time it needs to get there.
-        finish: when it would be done, were it the robot's next.
+        finish: when it would be done if the robot took it next.
         slack: deadline - finish; < 0 if it would be late.
-        deadline: of the task.
+        deadline: its deadline.
         reason: why the robot may not choose it, or that it may.
-        status: of the task now.
-        taken_by: the robot that took it, None if it is free.
-        done: when that robot finishes it, None if it is free.
-        rival: the robot among the others that could be done first and in time, None if there is none or it is taken.
-        rival_finish: when that robot would be done, were it its next; None if there is none.
-        who: what people call the robot that took it or, if it is free, the rival; empty if there is neither.
+        status: its status now.
+        taken_by: the robot that took it, None if nobody did.
+        done: when that robot finishes it, None if nobody took it.
+        rival: the other robot that could finish it first, and in time; None if there is none or it is taken.
+        rival_finish: when the rival would finish it if it took it next; None if there is no rival.
+        who: name of the robot that took it or, if nobody did, of the rival; empty if there is neither.
         probability: the policy's, None if it has none.
         digits: how times of its scenario are written.
     """
@@ -62,7 +62,7 @@ class Prospect:
     digits: Digits
 
     def __str__(self) -> str:
-        """What there is to say of it besides numbers: why it may not be chosen, or who else could do it."""
+        """A remark on it: why it may not be chosen, or who else could do it."""
         time = self.digits.time
         if self.taken_by is not None and self.done is not None:
             doing = {
@@ -87,7 +87,7 @@ def outlook(
     probabilities: Mapping[int, float] | None = None,
     tasks: Sequence[int] | None = None,
 ) -> list[Prospect]:
-    """Every task as `robot` has it before it when it is next free, in order of index.
+    """Every task as `robot` sees it when it is next free, in order of index.
 
     Args:
         mission: as it stands.
@@ -105,7 +105,7 @@ def outlook(
     dx, dy = (scenario.task_xy[which] - mission.position[robot]).T
     travel = travel_time(dx, dy, scenario.speed[robot], np.sqrt)
     finish, deadline = mission.finish_if[robot, which], scenario.deadline[which]
-    # Of the others, who could be done first: those that are retired could not.
+    # Which of the others could finish first; retired robots cannot.
     others = mission.finish_if[:, which]
     others[np.array(mission.retired)] = np.inf
     others[robot] = np.inf
@@ -149,7 +149,7 @@ def ranked(prospects: list[Prospect], by: SortKey = "rank") -> list[Prospect]:
     if by not in get_args(SortKey):
         raise ConfigError(f"there is no order {by!r}; expected one of {', '.join(get_args(SortKey))}")
     if by != "rank":
-        # What may be chosen comes first, but for the order by number.
+        # What may be chosen comes first, except in the order by number.
         return sorted(
             prospects, key=lambda each: (by != "task" and each.reason != MaskReason.CHOOSABLE, getattr(each, by))
         )

@@ -53,12 +53,12 @@ class Line:
     name: str = ""
 
     def note(self, most: int, least: int, among: Sequence[str] = ()) -> str:
-        """The note, its name shortened to make it fit into so many columns.
+        """The note, with the name in it shortened so that it fits.
 
         Args:
-            most: columns that there are for the note.
+            most: columns available for the note.
             least: columns that the name keeps in any case.
-            among: names from which this one must be told apart.
+            among: names that this one must be told apart from.
         """
         text = self.cells[-1]
         room = cell_len(self.name) - (cell_len(text) - most)
@@ -72,9 +72,9 @@ class Listing:
     Attributes:
         title: the line above it.
         columns: the headings.
-        left: the headings of the columns that are aligned at the left.
+        left: the headings of the left-aligned columns.
         rows: the lines.
-        spare: the columns to leave out where there is no room, the most dispensable first.
+        spare: the columns to leave out where room is short, the most dispensable first.
     """
 
     title: str
@@ -189,5 +189,5 @@ def _named(index: int | None, names: Sequence[str]) -> str:
 
 
 def _texts(headings: tuple[str, ...], names: Sequence[str]) -> tuple[str, ...]:
-    """The columns that are aligned at the left: those without a heading, and the last of these if there are names."""
+    """The left-aligned columns: those without a heading, and the last of these if there are names."""
     return ("", *headings[-1:]) if names else ("",)

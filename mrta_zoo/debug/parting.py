@@ -1,4 +1,4 @@
-"""The first decision at which two methods choose differently, and what would come of the other's choice."""
+"""The parting of two methods: the first decision at which they differ, and what the other's choice would lead to."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Alternative:
         distance: to it, in distance units; None if the robot stays, as for the next two.
         finish: when it is done.
         slack: deadline - finish; < 0 if it is late.
-        probabilities: the first and the second method's of this task, None of one that has none.
+        probabilities: of this task, by the first and by the second method; None for one that has none.
     """
 
     task: int | None
@@ -39,7 +39,7 @@ class Parting:
     Attributes:
         index: number of the decision, from 0.
         time: when it is made.
-        robot: whose it is.
+        robot: who makes it.
         choices: of the first and the second method.
         otherwise: the score if the first method takes the second's choice here and goes on by itself, and the same
             the other way round; None where the method's mask rule forbids that choice.
@@ -60,8 +60,8 @@ def parting_of(traces: tuple[Trace, Trace], advisors: tuple[Advisor, Advisor]) -
         advisors: the methods.
     """
     scenario = traces[0].scenario
-    # Under one rule the same robot is to choose as long as all choices are the same. One that its own rule retires
-    # stays here.
+    # Under one common rule the same robot chooses as long as all choices are the same. A robot that its method's own
+    # rule retires stays instead.
     rule = loosest(trace.mask_rule for trace in traces)
     common = [Trace.of_plan(scenario, trace.plan(), rule) for trace in traces]
     pairs = zip(common[0].decisions(), common[1].decisions(), strict=False)
@@ -78,7 +78,7 @@ def parting_of(traces: tuple[Trace, Trace], advisors: tuple[Advisor, Advisor]) -
         _otherwise(trace, advisor, decision, task)
         for trace, advisor, decision, task in zip(traces, advisors, own, tasks[::-1], strict=True)
     ]
-    # What a method makes of a task is known best where it took it.
+    # A method's probabilities for a task are best read from the episode in which it took that task.
     own_choices = [None if decision is None else decision.choice for decision in own]
     others = [
         choice if trace is None or decision is None else trace.choices[decision.index]
@@ -93,7 +93,7 @@ def parting_of(traces: tuple[Trace, Trace], advisors: tuple[Advisor, Advisor]) -
 
 
 def _own_decision(trace: Trace, robot: int, turn: int) -> Decision | None:
-    """A robot's decision of that number; None if its rule leaves it none."""
+    """A robot's decision in its turn `turn`, from 0; None if its mask rule leaves it none."""
     turns = [decision for decision in trace.decisions() if decision.robot == robot]
     return turns[turn] if turn < len(turns) else None
 
@@ -110,7 +110,7 @@ def _probability(choice: Choice | None, task: int) -> float | None:
 
 
 def _otherwise(trace: Trace, advisor: Advisor, decision: Decision | None, task: int | None) -> Trace | None:
-    """The episode in which, at this decision of the trace, this task is taken, and then what its advisor says."""
+    """The episode that takes this task at this decision of the trace and then follows the advisor."""
     if decision is None:
         return None
     before = trace.choices[: decision.index]

@@ -1,4 +1,4 @@
-"""Episodes from start to end, written down."""
+"""Recording of whole episodes."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mrta_zoo.scenario import Scenario
 from mrta_zoo.trace import Choice, Trace, make
 
 LEAST, FEW = 1e-4, 10
-"""Probabilities below are not written down, unless they are among the few that are greatest."""
+"""Probabilities below `LEAST` are not recorded, unless they are among the `FEW` largest."""
 
 
 def record(scenario: Scenario, method: str | Policy | Solver | Plan, **options: Any) -> Trace:
@@ -32,17 +32,17 @@ def record(scenario: Scenario, method: str | Policy | Solver | Plan, **options: 
 
 
 def play(scenario: Scenario, advisor: Advisor, first: Sequence[Choice] = ()) -> Trace:
-    """The episode in which the advisor decides, after some choices that were made for it.
+    """The episode in which the advisor decides, after some given choices.
 
     Args:
         scenario: the mission.
-        advisor: is asked at every decision.
-        first: what to choose at the first decisions, whatever it advises. A memoryless advisor is asked from the last
-            of them on.
+        advisor: asked at every decision.
+        first: what to choose at the first decisions, whatever it advises. A memoryless advisor is asked only from the
+            last of them on.
 
     Raises:
         PlanError: if a robot may not choose what it should.
-        ActionError: if a policy gives no task's number.
+        ActionError: if a policy's action is not the number of a task.
     """
     mission = Mission(scenario, advisor.mask_rule)
     state = advisor.begin()
@@ -62,7 +62,7 @@ def play(scenario: Scenario, advisor: Advisor, first: Sequence[Choice] = ()) -> 
 
 
 def recorded(choice: Choice) -> Choice:
-    """A choice as it is written down: without what is next to impossible, but for a few of it, and what was chosen."""
+    """A choice as recorded: without negligible probabilities, unless of the task chosen, the advice or the best."""
     if choice.probabilities is None:
         return choice
     likeliest = sorted(choice.probabilities.items(), key=lambda each: -each[1])  # ties stay in order
@@ -75,5 +75,5 @@ def recorded(choice: Choice) -> Choice:
 
 
 def overrule(advice: Choice, task: int | None) -> Choice:
-    """The choice of `task`, maybe against the advice."""
+    """The choice of `task`, perhaps against the advice."""
     return advice if task == advice.task else replace(advice, task=task, advice=advice.task)

@@ -1,4 +1,4 @@
-"""A session as text on a terminal of any size, or on none."""
+"""The screen of a session: text for a terminal of any size, or for none."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ BETWEEN, TIGHT = 2, 1
 STYLES = {"advised": "bold green", "made": "yellow", "plain": "", "faint": "bright_black"}
 NEXT_SHOWN = 8
 NAME, LEAST_NAME, LEAST_NOTE = 10, 6, 12
-"""Width that names keep until names in notes are cut, that all names keep, and that notes keep."""
+"""Widths: names are cut down to `NAME` before names in notes are, and never below `LEAST_NAME`; notes keep
+`LEAST_NOTE`."""
 
 
 def screen(session: Session, rows: int, width: int, message: str = "") -> Group:
@@ -102,8 +103,8 @@ def table(session: Session, rows: int, width: int) -> list[RenderableType]:
 def column_widths(listing: Listing, width: int) -> tuple[dict[int, int], int]:
     """The widths of the columns that there is room for, and the blanks between two columns.
 
-    Numbers are never cut. Where there is no room, first names are shortened, those in notes, too; then columns are left
-    out, the most dispensable first; then the notes in the last column are cut. What the row is about always stays.
+    Numbers are never cut. Where room is short, names are shortened first, including those in notes; then columns are
+    left out, the most dispensable first; then the notes in the last column are cut. What the row is about always stays.
     """
     needed = {
         index: max(cell_len(cell) for cell in (column, *(row.cells[index] for row in listing.rows)))
@@ -168,7 +169,7 @@ def _turn(session: Session, width: int) -> str:
 
 
 def _task(scenario: Scenario, task: int, most: int) -> str:
-    """A task's name cut to so many columns, or its number."""
+    """A task's name cut to `most` columns, or its number."""
     return shortened(scenario.task_name(task), most, scenario.task_names) if scenario.task_names else f"task {task}"
 
 

@@ -1,4 +1,4 @@
-"""Commands that step through an episode, one per line: typed by a person, or read from a script."""
+"""A session of the stepper: commands, one per line, typed by a person or read from a script."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class Session:
 
     Args:
         stepper: where to begin.
-        advisor: the advisor of sessions that are loaded later.
+        advisor: the advisor for sessions loaded later.
         path: the file for `save` without an argument; None for the first file that the session is saved to.
 
     Attributes:
@@ -80,9 +80,9 @@ class Session:
         unsaved: number of the user's own choices since the last `save`.
     """
 
-    # Not the standard library's `cmd`: it prints, and asks for lines, by itself, splits them at the first character
-    # that no identifier has, and knows no arguments. Here the name of a task is a command, too, and terminal, script
-    # and tests decide where lines come from and answers go. Nor `shlex`: names may hold quotes and #.
+    # Not the standard library's `cmd`: it reads and prints by itself, splits lines at the first character that cannot
+    # be in an identifier, and has no arguments. Here a task's name is a command, too, and terminal, scripts and tests
+    # decide where lines come from and where answers go. Nor `shlex`: names may hold quotes and #.
 
     def __init__(self, stepper: Stepper, advisor: Advisor | None = None, path: Path | None = None) -> None:
         self.stepper, self._advisor, self.path = stepper, advisor, path
@@ -133,11 +133,11 @@ class Session:
             raise ConfigError(f"the command is {line!r}; expected {expected}")
         return command, argument
 
-    @_command("take the policy's choice, > in the table; as Enter alone")
+    @_command("take the policy's choice (> in the table), as Enter alone does")
     def follow(self, _: str) -> str:
         return self._chosen(self.stepper.follow)
 
-    @_command("take this task; as its name or number alone", argument="TASK")
+    @_command("take this task, as its name or number alone does", argument="TASK")
     def take(self, task: str) -> str:
         number = identify(task, "task", self.stepper.scenario.task_names)
         return self._chosen(lambda: self.stepper.take(number), own=True)
@@ -210,7 +210,7 @@ class Session:
         if path is None:
             raise ConfigError("there is no file to save to yet; expected save FILE")
         if path.is_file() and json_kind(path) != "mrta_zoo.trace":
-            raise ConfigError(f"{path} is there already and is no session; expected a new file, or a session's")
+            raise ConfigError(f"{path} already exists and is not a session; expected a new file, or a session's")
         self.stepper.save(path)
         self.path, self.unsaved = self.path or path, 0  # a copy does not move the session
         return f"{counted(len(self.stepper), 'decision')} saved to {path}"

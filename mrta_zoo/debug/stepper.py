@@ -1,4 +1,4 @@
-"""Going through an episode one decision at a time, forth and back, with the advice of a policy."""
+"""The stepper: an episode one decision at a time, forwards and backwards, with the advice of a policy."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ from mrta_zoo.wording import counted
 
 
 class Stepper:
-    """An episode under way, in which every decision can be looked at, taken back and taken otherwise.
+    """An episode under way, in which every decision can be looked at, taken back and made differently.
 
-    It stands before one decision, or at the end. What was chosen after it, before somebody went back, is kept until
-    another choice is made here. All that can be seen is that of a fresh mission in which the same choices are made.
+    It stands before one decision, or at the end. Choices made beyond it before going back are kept until another choice
+    is made here. Everything it shows equals that of a fresh mission in which the same choices are made.
 
     >>> stepper = Stepper(scenario, "capam-plus")
     >>> stepper.follow()                  # the policy's choice
@@ -35,14 +35,14 @@ class Stepper:
 
     Args:
         scenario: the mission.
-        method: whose advice to hear: a name or path that `registry.make_solver` knows, a policy, a solver, a plan, or
-            an `Advisor`; None for nobody's.
+        method: whose advice to show: a name or path that `registry.make_solver` knows, a policy, a solver, a plan, or
+            an `Advisor`; None for no advice.
         **options: see `advisors.make_advisor`.
 
     Attributes:
         scenario: the scenario.
         mask_rule: what robots may choose.
-        mission: as it stands before this decision. Neither to be changed nor kept: forward, the same one goes on.
+        mission: as it stands before this decision. Do not change or keep it: `forward` moves the same object on.
         position: how many decisions have been made so far.
 
     Raises:
@@ -58,11 +58,11 @@ class Stepper:
 
     @classmethod
     def resume(cls, trace: Trace, advisor: Advisor | None = None) -> Stepper:
-        """Go through an episode that there is already, from its bookmark, or else from its start.
+        """Step through a recorded episode, from its bookmark or else from its start.
 
         Args:
-            trace: the episode. Its probabilities are shown as they are.
-            advisor: is asked where the trace says nothing; None for nobody.
+            trace: the episode. Its probabilities are shown as recorded.
+            advisor: asked where the trace holds no advice; None for no advice there.
         """
         stepper = cls.__new__(cls)
         stepper._open(trace, advisor)
@@ -71,7 +71,7 @@ class Stepper:
 
     @classmethod
     def load(cls, path: StrPath, advisor: Advisor | None = None) -> Stepper:
-        """Go on with a saved session, or any other trace.
+        """Continue a saved session, or any other trace.
 
         Raises:
             MrtaError: if the file is missing or malformed.
@@ -86,7 +86,7 @@ class Stepper:
         self.mission = Mission(self.scenario, self.mask_rule)
 
     def __len__(self) -> int:
-        """The number of decisions made, including those made after this one before somebody went back."""
+        """The number of decisions made, including those beyond this one that were made before going back."""
         return len(self._choices)
 
     @property
@@ -96,7 +96,7 @@ class Stepper:
 
     @property
     def robot(self) -> int:
-        """Who is to choose; -1 at the end."""
+        """The robot that is to choose; -1 at the end."""
         return self.mission.actor
 
     @property
@@ -106,7 +106,7 @@ class Stepper:
 
     @property
     def made(self) -> Choice | None:
-        """What was chosen here before somebody went back; None if nothing was."""
+        """The choice made here before going back; None if none was."""
         return self._choices[self.position] if self.position < len(self._choices) else None
 
     @property
@@ -115,7 +115,7 @@ class Stepper:
         return self._advice.at(self.position, self.mission, self._choices)
 
     def outlook(self, robot: int | None = None, by: SortKey = "rank") -> list[Prospect]:
-        """Every task as a robot has it before it, by default the one that is to choose.
+        """Every task as a robot sees it, by default the robot that is to choose.
 
         Raises:
             ActionError: at the end, if no robot is named.
@@ -158,11 +158,11 @@ class Stepper:
         return self._choose(Choice(None) if self.advice is None else overrule(self.advice, None))
 
     def back(self, decisions: int = 1) -> None:
-        """Take decisions back, so many or all that there are."""
+        """Take back this many decisions, or all if there are fewer."""
         self.go_to(max(self.position - decisions, 0))
 
     def forward(self, decisions: int = 1) -> None:
-        """Go on: make the choices again that were made before somebody went back, then follow the policy.
+        """Go on: repeat the choices made before going back, then follow the policy.
 
         Raises:
             ActionError: if the mission is over, or there is no policy to follow.
@@ -178,10 +178,10 @@ class Stepper:
                 self.position += 1
 
     def go_to(self, position: int) -> None:
-        """Stand before that decision, counted from 0, or at the end if the mission is over before it.
+        """Go to just before a decision, counted from 0, or to the end if the mission is over by then.
 
         Raises:
-            ActionError: if the number is negative, or there is no policy to follow as far as that.
+            ActionError: if the number is negative, or there is no policy to follow that far.
         """
         if position < 0:
             raise ActionError(f"there is no decision {position}; expected a number from 0")
@@ -195,7 +195,7 @@ class Stepper:
         """Go on to the next decision of this robot, or stay here if it has none.
 
         Raises:
-            ActionError: if it has none, or there is no policy to follow as far as that.
+            ActionError: if it has none, or there is no policy to follow that far.
         """
         if not 0 <= robot < self.scenario.num_robots:
             raise ActionError(f"there is no robot {robot}; expected a number from 0 to {self.scenario.num_robots - 1}")
@@ -215,13 +215,13 @@ class Stepper:
         """Go on to the end of the mission.
 
         Raises:
-            ActionError: if there is no policy to follow as far as that.
+            ActionError: if there is no policy to follow that far.
         """
         while not self.done:
             self.forward()
 
     def trace(self) -> Trace:
-        """All decisions there are, with a bookmark at this one."""
+        """All decisions, with a bookmark at this one."""
         source = self._trace if self._advisor is None else self._advisor
         return Trace(
             self.scenario, tuple(self._choices), self.mask_rule, source.method, source.decode, source.seed,
@@ -248,7 +248,7 @@ class Stepper:
             self.mission.stay()
         else:
             self.mission.assign(choice.task)
-        if made is None or made.task != choice.task:  # another course from here on
+        if made is None or made.task != choice.task:  # the episode takes another course from here
             self._choices[self.position :] = [recorded(choice)]
             self._advice.forget_after(self.position)
         self.position += 1

@@ -1,4 +1,4 @@
-"""Stepping at a terminal, and by a script."""
+"""The stepper at a terminal, and driven by a script."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def interact(session: Session, console: Console) -> None:
         except EOFError:
             return
         try:
-            with console.status("…"):  # a policy may need some seconds for a long way
+            with console.status("…"):  # a policy may need some seconds for many decisions
                 message = session.do(line)
         except MrtaError as error:
             message = f"! {' '.join(str(error).split())}"
@@ -44,10 +44,10 @@ def interact(session: Session, console: Console) -> None:
 
 
 def run_script(session: Session, lines: Iterable[str], source: str, console: Console) -> None:
-    """Carry out commands, one per line, and print the result of each; at the end, print where that has led.
+    """Carry out commands, one per line, and print the result of each; at the end, print where the session is.
 
-    Comments, which begin with a ``#`` that is no part of a name, and empty lines are skipped, so that taking the
-    policy's choice must be written `follow`. ``show [rows]``, which only scripts have, prints what a terminal would.
+    Comments, which begin with a ``#`` that is not part of a name, and empty lines are skipped, so taking the policy's
+    choice must be written `follow`. ``show [rows]``, which only scripts have, prints what a terminal would.
 
     Args:
         session: the session to step.
@@ -82,7 +82,7 @@ def run_script(session: Session, lines: Iterable[str], source: str, console: Con
 
 
 def without_comment(line: str, names: Sequence[str]) -> str:
-    """The line of a script up to a ``#`` that is no part of a name."""
+    """The line of a script up to a ``#`` that is not part of a name."""
     hidden = line
     for name in sorted((name for name in names if "#" in name), key=len, reverse=True):
         hidden = hidden.replace(name, "\0" * len(name))
@@ -90,7 +90,7 @@ def without_comment(line: str, names: Sequence[str]) -> str:
 
 
 def _print(console: Console, what: RenderableType) -> None:
-    """Print without blanks at the ends of lines, which tables leave there."""
+    """Print without the trailing blanks that tables leave."""
     with console.capture() as captured:
         console.print(what)
     for line in captured.get().splitlines():

@@ -64,7 +64,7 @@ class ActingRobotEnv(gymnasium.Env[Any, Any]):
         for option, only in (("staggered", False), ("absent", "omit")):
             if (given := getattr(self._aec.settings, option)) != only:
                 raise ConfigError(
-                    f"{option} is {given!r}; expected {only!r}, for one agent acts for all robots to the end"
+                    f"{option} is {given!r}; expected {only!r}, as one agent acts for all robots to the end"
                 )
         self.on_illegal = on_illegal
         self.illegal_reward = as_finite("illegal_reward", illegal_reward)

@@ -79,7 +79,7 @@ def read_cases(folder: StrPath, tell: Callable[[str], None] | None = None) -> li
     if not scenarios:
         raise ScenarioError(f"{root} holds no cases; expected group*/*.txt (TAPTC), *.json or *.csv files")
     if len(tables) > 1:
-        raise ScenarioError(f"{tables[1]}: there is {tables[0].name}, too; expected one reference table")
+        raise ScenarioError(f"{tables[1]}: the folder also has {tables[0].name}; expected one reference table")
     references = read_reference(tables[0], scenarios) if tables else {}
     if strangers := _strangers(references, scenarios):
         sentence = f"{tables[0]}: {strangers}"

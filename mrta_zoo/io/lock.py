@@ -25,5 +25,5 @@ def lock_folder(folder: Path) -> FileLock:
     try:
         lock.acquire(timeout=0)
     except Timeout:
-        raise ConfigError(f"{folder} is in use by another run; expected to wait for its end, or a new folder") from None
+        raise ConfigError(f"{folder} is in use by another run; wait until that ends, or name a new folder") from None
     return lock

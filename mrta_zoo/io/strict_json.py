@@ -81,7 +81,7 @@ def _float(token: str) -> float:
 
 
 def _constant(token: str) -> float:
-    raise ValueError(f"{token} is no JSON number; expected a finite number")
+    raise ValueError(f"{token} is not a JSON number; expected a finite number")
 
 
 def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

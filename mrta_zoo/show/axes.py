@@ -1,4 +1,4 @@
-"""How matplotlib's axes look in our pictures."""
+"""The look of matplotlib's axes in our pictures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Figures that show every text as it is written, and the formats in which they can be saved here.
+"""Figures that show text literally, and the file formats in which they can be saved.
 
 Needs matplotlib (``mrta_zoo[plot]``), which it uses without its global state.
 """
@@ -21,11 +21,11 @@ with importing("plot", "a picture"):
     from matplotlib.text import Text
 
 NOT_OFFERED = ("pgf", "raw", "rgba")
-"""Formats of matplotlib's in which every text is TeX, and which have no header: nothing opens them."""
+"""Formats of matplotlib that are not offered: ``pgf`` reads all text as TeX, and nothing opens the others."""
 
 
 class LiteralFigure(Figure):
-    """A figure in which no text is markup: matplotlib takes dollar signs, which names may hold, for mathematics."""
+    """A figure in which no text is markup: matplotlib reads dollar signs, which names may hold, as mathematics."""
 
     def draw(self, renderer: Any) -> None:
         """Draw all of it; letters that the font lacks become boxes."""
@@ -36,10 +36,10 @@ class LiteralFigure(Figure):
 
 
 def check_format(path: Path) -> None:
-    """Make sure that pictures can be written here in the format that the suffix says.
+    """Make sure that pictures can be written in the format of the suffix.
 
     Raises:
-        ConfigError: if not, be it that there is no such format or that what writes it is not installed.
+        ConfigError: if there is no such format, or the library that writes it is not installed.
     """
     problem = _problem(_format_of(path))
     if problem is not None:
@@ -48,11 +48,11 @@ def check_format(path: Path) -> None:
 
 
 def save_picture(figure: Figure, path: Path, **options: Any) -> None:
-    """Write a figure, whole or not at all, in the format that the suffix says: ``.png``, ``.svg``, ``.pdf``…
+    """Write a figure, whole or not at all, in the format of the suffix: ``.png``, ``.svg``, ``.pdf``…
 
     Args:
-        figure: to be written.
-        path: where to.
+        figure: the figure.
+        path: the file.
         options: of matplotlib's `savefig`.
 
     Raises:
@@ -77,13 +77,13 @@ def _known() -> set[str]:
 
 
 def _problem(format_: str) -> str | None:
-    """Why a format cannot be written, found by writing a little of it; None if it can."""
+    """Why a format cannot be written, found by trying it on a small figure; None if it can."""
     if format_ not in _known():
         return ""
     figure = LiteralFigure(figsize=(0.5, 0.5))
     figure.text(0.5, 0.5, "a")
     try:
         figure.savefig(BytesIO(), format=format_)
-    except Exception as error:  # whatever the library that a format needs says of what it lacks
+    except Exception as error:  # whatever the library that a format needs raises
         return f", which cannot be written here ({' '.join(str(error).split())})"
     return None

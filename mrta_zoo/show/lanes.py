@@ -1,4 +1,4 @@
-"""Where the lines from the tasks of a schedule to their deadlines lie, such that none crosses another."""
+"""Lanes in the chart of a schedule, in which lines from tasks to their deadlines run without crossing."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from mrta_zoo.verify import Visit
 def deadline_lanes(visits: Sequence[Visit]) -> list[int]:
     """The lane of each task's line from its finish to its deadline; see `lanes`.
 
-    Lines of tasks done in time go on below the bars, their lanes counted from the bottom; those of late ones go back
-    above the bars, their lanes counted from the top.
+    The lines of tasks done in time run forwards below the bars, in lanes counted from the bottom; those of late tasks
+    run back above the bars, in lanes counted from the top.
 
     Args:
         visits: a robot's, in order.
@@ -28,19 +28,19 @@ def deadline_lanes(visits: Sequence[Visit]) -> list[int]:
 
 
 def lanes(starts: Sequence[float], ends: Sequence[float]) -> list[int]:
-    """The lane for each of some lines side by side, such that none crosses another one, nor what leads down to it.
+    """A lane for each line, so that no line crosses another, nor the connector that leads down to another's start.
 
-    A line begins under its start, to which something leads down through all lanes that lie higher.
+    The connector of a line leads down to its start through all higher lanes.
 
     Args:
-        starts: where lines begin, rising.
-        ends: where they end, not before.
+        starts: where the lines start, ascending.
+        ends: where they end, not before they start.
 
     Returns:
         For each line its lane, counted from the bottom.
     """
     found: list[int] = []
-    below: list[float] = []  # where the lines end over which the next one lies
+    below: list[float] = []  # where the lines end that lie below the next one
     for start, end in zip(starts, ends, strict=True):
         while below and below[-1] < start:
             below.pop()

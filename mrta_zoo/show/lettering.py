@@ -1,4 +1,4 @@
-"""Where text has room in a picture. Lengths are in points, 1/72 of an inch.
+"""Lettering of pictures: how wide text is, and where labels have room. Lengths are in points, 1/72 of an inch.
 
 Needs matplotlib (``mrta_zoo[plot]``), which it uses without its global state.
 """
@@ -22,7 +22,7 @@ with importing("plot", "a picture"):
     from matplotlib.textpath import text_to_path
 
 AROUND = ((1, 1), (1, -1), (-1, 1), (-1, -1), (1, 0), (-1, 0), (0, 1), (0, -1))
-"""Where a label may lie as seen from its place, the first choice first."""
+"""Where a label may lie relative to its place, in order of preference."""
 
 
 _warnings = RLock()
@@ -30,9 +30,9 @@ _warnings = RLock()
 
 @contextmanager
 def any_letters() -> Iterator[None]:
-    """Within it matplotlib does not warn of letters that its font lacks.
+    """Context in which matplotlib does not warn of letters that its font lacks.
 
-    One thread at a time is in it, as filters of warnings are the whole process's.
+    Only one thread at a time may be in it, as warning filters belong to the whole process.
     """
     with _warnings, warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing from")
@@ -41,7 +41,7 @@ def any_letters() -> Iterator[None]:
 
 @lru_cache(maxsize=4096)
 def text_width(text: str, size: float, weight: str = "normal") -> float:
-    """How wide a line of text is in matplotlib's own font."""
+    """The width of a line of text in matplotlib's own font."""
     with any_letters():
         width, _, _ = text_to_path.get_text_width_height_descent(text, FontProperties(size=size, weight=weight), False)
     return float(width)
@@ -53,7 +53,7 @@ def fitted(text: str, room: float, size: float, weight: str = "normal", among: S
 
 
 def round_number(value: float) -> str:
-    """A number beside an axis: every digit of it, as far as it is no error of rounding."""
+    """A number beside an axis: all its digits except rounding errors."""
     return f"{value:.15g}"
 
 
@@ -63,11 +63,11 @@ def places_of_labels(
     """Where labels lie beside their places so that none covers another, a mark or the frame.
 
     Args:
-        places: (N, 2) what is to be labelled.
+        places: (N, 2) the places to be labelled.
         texts: (N,) the labels.
         size: of the letters.
-        clear: (K, 4) boxes that stay clear: left, bottom, right, top.
-        frame: width and height; labels lie within.
+        clear: (K, 4) boxes to be kept clear: left, bottom, right, top.
+        frame: its width and height; labels lie within.
 
     Returns:
         The lower left corner of each label for which there is room, by its index.

@@ -1,4 +1,4 @@
-"""How objects show themselves in a notebook: a table, and a small map as SVG. Needs no library."""
+"""Markup for notebooks: a table, and a small map as SVG. Needs no library."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ from mrta_zoo.digits import full, rounded
 from mrta_zoo.show.palette import FAINT, GROUND, URGENCY, blend, robot_colour
 
 MOST_ROWS = 20
-"""Of a table; the others are counted."""
+"""The most rows of a table; the others are only counted."""
 _SIDE = 320.0
 LITERAL = "tex2jax_ignore mathjax_ignore"
-"""The classes of elements in which notebooks leave dollar signs alone, which elsewhere they read as mathematics."""
+"""The classes of elements in which notebooks leave dollar signs alone instead of reading them as mathematics."""
 _CELL = "text-align:left;padding:2px 12px 2px 0"
 
 
@@ -23,7 +23,7 @@ def table(title: str, header: Sequence[str], rows: Iterable[Sequence[object]]) -
     Args:
         title: plain text, as are all cells.
         header: names of the columns.
-        rows: their values; of more than `MOST_ROWS` the first are shown.
+        rows: their values; only the first `MOST_ROWS` are shown.
     """
     every = list(rows)
     lines = [f'<div class="{LITERAL}"><div><b>{escape(title)}</b></div><table style="border-collapse:collapse"><tr>']
@@ -40,12 +40,12 @@ def table(title: str, header: Sequence[str], rows: Iterable[Sequence[object]]) -
 
 
 def in_order(names: Iterable[object]) -> str:
-    """Names as plain text from left to right, also where some are written from right to left."""
+    """Names as plain text, in order from left to right even if some are in right-to-left scripts."""
     return " → ".join(set_apart(str(name)) for name in names)
 
 
 def set_apart(name: str) -> str:
-    """A name as plain text; one written from right to left so that what follows it stays behind it."""
+    """A name as plain text; in a right-to-left script it is isolated, so that the text after it stays after it."""
     return f"\u2068{name}\u2069" if any(map(_from_right, name)) else name
 
 
@@ -56,14 +56,14 @@ def map_of(
     robots: Sequence[tuple[str, float, float]],
     horizon: float,
 ) -> str:
-    """A map as SVG: tasks, the redder the earlier their deadline, and the squares where robots start.
+    """A map as SVG: tasks, redder the earlier their deadlines, and a square where each robot starts.
 
     Args:
         low: the lowest x and y that are shown.
-        size: width and height of what is shown, in distance units, > 0.
-        tasks: what each is called, its place and its deadline.
-        robots: what each is called, and its place.
-        horizon: the deadline, > 0, from which on tasks are as pale as can be.
+        size: width and height of the part shown, in distance units, > 0.
+        tasks: name, place and deadline of each.
+        robots: name and place of each.
+        horizon: the deadline, > 0, from which on tasks are palest.
     """
     scale = _SIDE / max(size)
     width, height = (scale * side for side in size)

@@ -1,4 +1,4 @@
-"""How scenarios, plans and scores show themselves in a notebook.
+"""Notebook views of scenarios, plans and scores.
 
 The model does not know how it is shown: `attach`, called when the package is imported, gives each class the method
 ``_repr_html_`` that notebooks look for.
@@ -20,7 +20,7 @@ from mrta_zoo.wording import counted
 
 
 def scenario_html(scenario: Scenario) -> str:
-    """The ranges of what a scenario holds, and its map."""
+    """The range of each quantity of a scenario, and its map."""
     rows = [
         (what, full(values.min()), full(values.mean()), full(values.max()))
         for who in get_args(Who)
@@ -69,6 +69,6 @@ FORMATTERS: dict[type, Callable[[Any], str]] = {Scenario: scenario_html, Plan: p
 
 
 def attach() -> None:
-    """Let notebooks show each type by its entry in `FORMATTERS`."""
+    """Make notebooks show each type by its entry in `FORMATTERS`."""
     for shown, formatter in FORMATTERS.items():
         shown._repr_html_ = formatter  # type: ignore[attr-defined]

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 INK, FAINT = "#22303c", "#6b7783"
-"""Of text: what matters, and what helps to read it."""
+"""Colours of text: what matters, and what helps to read it."""
 
 GROUND = "#f5f6f8"
-"""Of maps and charts."""
+"""The background of maps and charts."""
 
 ROBOT_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#882255", "#4d4d4d")
-"""One for each robot, from the start again after the last. Okabe and Ito's, which colour-blind people can tell apart
-(without yellow and black, with wine and grey); robots are numbered in pictures all the same."""
+"""One for each robot, starting again after the last. Okabe and Ito's, which colour-blind people can tell apart (without
+yellow and black, with wine and grey); even so, pictures number the robots."""
 
 URGENCY = ("#e03131", "#ff922b", "#ffd8a8", "#fff9ef")
-"""Of tasks nobody has taken, from those whose deadline is now to those with all the time of the mission left."""
+"""Colours of tasks nobody has taken, from those due now to those with all the time of the mission left."""
 
 MISSED = "#000000"
 
@@ -26,7 +26,7 @@ def robot_colour(robot: int) -> str:
 
 
 def blend(colours: Sequence[str], share: float) -> str:
-    """The colour that lies at `share`, 0 to 1, of the way from the first to the last; beyond, that end's."""
+    """The colour at `share`, 0 to 1, of the way from the first to the last; outside that range, the nearer end's."""
     place = min(max(share, 0.0), 1.0) * (len(colours) - 1)
     index = min(int(place), len(colours) - 2)
     below, above = (bytes.fromhex(colour[1:]) for colour in colours[index : index + 2])

@@ -1,4 +1,4 @@
-"""Names with less room than they need: what tells them from the others that are shown with them stays."""
+"""Shortened names, which keep what tells them from the others that are shown with them."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from itertools import pairwise
 from unicodedata import combining
 
 SHORTEST = 5
-"""Letters that a name must keep if nothing in it tells it from the others, the mark of what is missing included."""
+"""The fewest characters, with the ellipsis, that a name keeps if nothing in it tells it from the others."""
 NUMBER = re.compile(r"\d+(?:[.,:]\d+)*")
 WORD = re.compile(r"\d+(?:[.,:]\d+)*|[^\W\d]+")
 
@@ -18,11 +18,11 @@ WORD = re.compile(r"\d+(?:[.,:]\d+)*|[^\W\d]+")
 def shortened(name: str, fits: Callable[[str], bool], among: Sequence[str] = ()) -> str:
     """The name if it fits; else what tells it from the others, after as much of its beginning as fits; else "".
 
-    Where that is all of it, or long, its ends are kept. A number alone is never cut.
+    If that is the whole name, or too long, its two ends are kept. A number alone is never cut.
 
     Args:
-        name: to be shown.
-        fits: whether a text has room; the longer, the less.
+        name: the name.
+        fits: whether there is room for a text; if so, there is for shorter ones.
         among: all names that are shown together.
     """
     if fits(name) or name.isdecimal():
@@ -45,11 +45,11 @@ def shortened(name: str, fits: Callable[[str], bool], among: Sequence[str] = ())
 
 @lru_cache(maxsize=16)
 def telling(names: tuple[str, ...]) -> dict[str, tuple[tuple[int, int], ...]]:
-    """Of each name, the part that no other one has at its place: in whole words, and as short as can be."""
+    """The shortest part of each name that no other has in its place: in whole words, and in whole numbers."""
     before, after = _alike(names), _alike(tuple(name[::-1] for name in names))
     found: dict[str, tuple[tuple[int, int], ...]] = {}
     for name in before:
-        # The first letter that one neighbour in order lacks, and the last that another one, read from behind, lacks.
+        # The first letter that the next name in order lacks, and the last that the next one in order of ends lacks.
         first, last = before[name], len(name) - 1 - after[name[::-1]]
         part = max(0, min(first, last)), min(len(name), max(first, last) + 1)
         found[name] = (_whole(name, *part, WORD), _whole(name, *part, NUMBER))
@@ -57,7 +57,7 @@ def telling(names: tuple[str, ...]) -> dict[str, tuple[tuple[int, int], ...]]:
 
 
 def _alike(names: tuple[str, ...]) -> dict[str, int]:
-    """How many letters each has in common with another one at their beginnings, at most."""
+    """The most letters that the beginning of each name has in common with that of another."""
     ordered = sorted(set(names))
     common = [0, *(next((place for place, (a, b) in enumerate(zip(*pair, strict=False)) if a != b), len(pair[0]))
                    for pair in pairwise(ordered)), 0]  # fmt: skip
@@ -65,7 +65,7 @@ def _alike(names: tuple[str, ...]) -> dict[str, int]:
 
 
 def _whole(name: str, low: int, high: int, unit: re.Pattern[str]) -> tuple[int, int]:
-    """A part with all of the words or numbers that it begins and ends in, without blanks around it."""
+    """A part of a name, extended to whole words or numbers, without blanks around it."""
     low, high = high - len(name[low:high].lstrip()), low + len(name[low:high].rstrip())
     spans = [match.span() for match in unit.finditer(name)]
     begins = (start for start, stop in spans if start <= low < stop)
@@ -86,7 +86,7 @@ def _ends(name: str, kept: int) -> str:
 
 
 def _without_accents(text: str) -> str:
-    """Text without what belongs to a letter before it."""
+    """Text without leading accents, which belong to a letter before it."""
     while text and combining(text[0]):
         text = text[1:]
     return text

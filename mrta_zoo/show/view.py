@@ -1,4 +1,4 @@
-"""What is shown of a scenario: which part of the plane, until when, and how many digits of its times and distances."""
+"""The view of a scenario: which part of the plane and of time is shown, and how many digits of times and distances."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from mrta_zoo.scales import Scales, frame_of
 from mrta_zoo.scenario import FloatArray, Scenario
 
 LEAST_FILLED = 1 / 3
-"""Of a map that is shown as a whole: how much of its longer side the mission takes up."""
+"""The whole map is shown if the mission takes up at least this share of its longer side."""
 LEAST_SIDE = 0.25
-"""Of the shorter side, as a share of the longer one; places may lie on a line."""
+"""The least share that the shorter side shown is of the longer one, as places may lie on a line."""
 
 
 def shown_box(scenario: Scenario) -> tuple[FloatArray, FloatArray]:
-    """The map or, where the mission would be lost on it, where the mission is: lowest x and y, width and height."""
+    """The map or, if the mission would be lost on it, the mission's frame: lowest x and y, width and height."""
     low, extent = np.array(scenario.map_origin), np.array(scenario.map_size)
     frame = frame_of(scenario, np.ones((1, 1), dtype=np.bool_))  # of all places, also those out of reach
     if frame[1].max() < LEAST_FILLED * extent.max():
@@ -27,10 +27,9 @@ def shown_box(scenario: Scenario) -> tuple[FloatArray, FloatArray]:
 
 
 def shown_time(scenario: Scenario, makespan: float) -> float:
-    """Until when a schedule is shown: until all is done, and until the latest deadline that can matter.
+    """The time until which a schedule is shown: until all is done and the latest deadline that can matter has passed.
 
-    But not for longer than twice the time in which all is done, so that the schedule is seen; later deadlines are
-    marked at the end.
+    But at most twice the makespan, so that the schedule stays visible; later deadlines are marked at the end.
 
     Args:
         scenario: the mission.
@@ -42,7 +41,7 @@ def shown_time(scenario: Scenario, makespan: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Digits:
-    """Times and distances of a scenario as text, in as many digits as their units ask for.
+    """Times and distances of a scenario as text, with as many digits as their units need.
 
     Attributes:
         of_times: digits after the point, >= 1.
@@ -54,7 +53,7 @@ class Digits:
 
     @classmethod
     def of(cls, scenario: Scenario) -> Digits:
-        """Those that tell apart what half of the robots do on the map, and half of the deadlines."""
+        """Enough digits for a median robot's way across the map and work, the median deadline, and the map's side."""
         side = float(shown_box(scenario)[1].max())
         speed, capacity, work, deadline = (
             float(np.median(each)) for each in (scenario.speed, scenario.capacity, scenario.workload, scenario.deadline)
@@ -66,10 +65,10 @@ class Digits:
         return _written(value, self.of_times)
 
     def distance(self, value: float) -> str:
-        """A distance, or a place along an axis."""
+        """A distance, or a coordinate."""
         return _written(value, self.of_distances)
 
 
 def _written(value: float, digits: int) -> str:
     text = f"{value:.{digits}f}"
-    return text if text.strip("-0.") or value == 0 else f"{value:.1g}"  # what is next to nothing is not nothing
+    return text if text.strip("-0.") or value == 0 else f"{value:.1g}"  # a tiny number is not shown as 0

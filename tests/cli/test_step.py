@@ -64,7 +64,7 @@ def test_a_script_steps_and_the_session_is_saved(mission: str, tmp_path: Path, c
     scenario = Path(mission).read_bytes()
     with_save = ["step", "--session", str(session), "--script", script(tmp_path, f"save {mission}")]
     assert main(with_save) == 2
-    assert "is there already and is no session" in capsys.readouterr().err
+    assert "already exists and is not a session" in capsys.readouterr().err
     assert Path(mission).read_bytes() == scenario
 
 

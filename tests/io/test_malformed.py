@@ -182,7 +182,7 @@ SENTENCES: dict[str, list[tuple[str | bytes, str]]] = {
         (SCENARIO.replace('"version": 1', '"version": true'), "version is true; expected 1"),
         (SCENARIO.replace("255", "x255"), "line 6, column 34: expecting value at 'x255, "),
         (SCENARIO[:-1], "line 10, column 1: expecting ',' delimiter at the end of the line; expected JSON"),
-        (SCENARIO.replace("255", "NaN"), "NaN is no JSON number; expected a finite number"),
+        (SCENARIO.replace("255", "NaN"), "NaN is not a JSON number; expected a finite number"),
         (SCENARIO.replace("255", "1e999"), "'1e999' is too large; expected a finite number"),
         (SCENARIO.replace("255", "9" * 5000), "is too large; expected a finite number"),
         (SCENARIO.replace('4, "deadline"', '4, "y": 4, "deadline"'), "field 'y' appears twice in an object"),

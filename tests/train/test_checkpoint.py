@@ -107,7 +107,7 @@ def test_number_of_workers_is_checked(tmp_path: Path, workers: str) -> None:
 
 def test_one_process_at_a_time(tmp_path: Path) -> None:
     checkpoint.start(tmp_path, TINY)
-    with FileLock(tmp_path / ".lock"), pytest.raises(ConfigError, match="is in use by another run; expected to wait"):
+    with FileLock(tmp_path / ".lock"), pytest.raises(ConfigError, match="is in use by another run; wait until"):
         train_command(["--out", str(tmp_path), "--resume"])
     assert not (tmp_path / "checkpoints").exists()
     train_command(["--out", str(tmp_path), "--resume"])
@@ -128,7 +128,7 @@ def test_a_run_begun_at_the_same_time_is_let_be(
         return make(*arguments, **options)  # type: ignore[arg-type]
 
     monkeypatch.setattr(checkpoint, "Reinforce", make_while_another_begins)
-    says = "is in use by another run; expected to wait" if still_runs else "already holds a run; go on with it"
+    says = "is in use by another run; wait until" if still_runs else "already holds a run; go on with it"
     with pytest.raises(ConfigError, match=says):
         train_command(["--preset", "smoke", "--out", str(tmp_path)])
     theirs.release()

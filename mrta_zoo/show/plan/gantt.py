@@ -1,4 +1,4 @@
-"""Who does what when: a plan's schedule as a chart, in which a line joins each task to its deadline.
+"""A plan's schedule as a Gantt chart, in which a line joins each task to its deadline.
 
 Needs matplotlib (``mrta_zoo[plot]``), which it uses without its global state. Heights are in points.
 """
@@ -28,36 +28,36 @@ with importing("plot", "a picture"):
 
 LATE = "#000000"
 BAR, APART, LANE = 20.0, 9.0, 3.0
-"""Of bars, between robots, and from one line to a deadline to the next; where there is room, up to twice as much."""
+"""Heights of bars, of gaps between robots, and of lanes for lines; where there is room, up to twice as much."""
 FARTHEST = 70.0
-"""Between robots, however few."""
+"""The widest gap between robots, however few."""
 THINNEST_LANE = 1.2
-"""Below that, lines would run into each other: deadlines are ticks then, which no line joins to their tasks."""
+"""In lanes thinner than this, lines would run into each other: deadlines are then ticks that no line joins to tasks."""
 TICKS = 5.0
-"""For such ticks."""
+"""Height of such ticks."""
 NAME, LABEL = 9.0, 7.0
 """Sizes of text."""
 LONGEST = 150.0
-"""Of a robot's name."""
+"""The widest that a robot's name may be."""
 HIGH = 600.0
-"""A chart higher than this has its numbers above it, too."""
+"""A chart higher than this has numbers along its top, too."""
 LEAST_FOR_NAME, LEAST_FOR_BOTH = 5.5, 22.0
-"""Of a row in which the robot's name has room, and in which what it does has room, too."""
+"""Least heights of a row that has room for the robot's name, and also for its numbers of tasks."""
 
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
-    """The chart: how high its parts are, and how it is drawn.
+    """The chart: the heights of its parts, and how it is drawn.
 
     Attributes:
         scenario: what was planned.
-        score: the verifier's of the plan.
+        score: the verifier's score of the plan.
         end: where the axis of time ends; deadlines beyond are marked at its end.
-        lanes: for each robot, those of its tasks' lines to their deadlines, see `lanes.deadline_lanes`.
+        lanes: for each robot, the lanes of its tasks' lines to their deadlines, see `lanes.deadline_lanes`.
         bar: height of a bar.
-        apart: between the rows of two robots.
+        apart: gap between the rows of two robots.
         lane: height of a lane; 0 if deadlines are mere ticks.
-        numbered: robots whose number is before their name, as the map has no room for the name.
+        numbered: robots whose number precedes their name, as the map has no room for the name.
     """
 
     scenario: Scenario
@@ -71,7 +71,7 @@ class Schedule:
 
     @classmethod
     def of(cls, scenario: Scenario, score: Score, least: float, most: float) -> Schedule:
-        """A chart that is no higher than `most` and, unless that pulls it apart too much, no lower than `least`."""
+        """A chart no higher than `most` and, unless that would stretch it too much, no lower than `least`."""
         end = shown_time(scenario, score.makespan)
         chart = cls(scenario, score, end, [deadline_lanes(visits) for visits in score.schedule])
         natural = chart.height
@@ -91,7 +91,7 @@ class Schedule:
 
     @property
     def height(self) -> float:
-        """Of all rows."""
+        """Height of all rows together."""
         return sum(self._row(robot) for robot in range(self.scenario.num_robots))
 
     def left(self) -> float:
@@ -99,7 +99,7 @@ class Schedule:
         return max(text_width(line, NAME, "bold") for each in self._names() for line in each.split("\n")) + 6
 
     def draw(self, axes: Any, width: float) -> None:
-        """Draw it on axes that are so wide, and as high as `height`."""
+        """Draw it on axes of this width and of its `height`."""
         low, high = -0.005 * self.end, 1.012 * self.end
         scale = width / (high - low)
         axes.set(xlim=(low, high), ylim=(self.height, 0.0))
@@ -132,7 +132,7 @@ class Schedule:
         ]  # fmt: skip
 
     def _counts(self, robot: int) -> tuple[int, int]:
-        """The lanes above a robot's bars, and below."""
+        """How many lanes lie above a robot's bars, and below."""
         both = list(zip(self.score.schedule[robot], self.lanes[robot], strict=True))
         above, below = (
             max((lane for visit, lane in both if visit.completed == in_time), default=-1) + 1
@@ -172,7 +172,7 @@ class Schedule:
         axes.add_collection(
             LineCollection(list(ends.reshape(-1, 2, 2)), colors=colour, linewidths=1.6, alpha=0.8, zorder=2)
         )
-        wide = scale * (finish - arrival) > 2.5  # an edge of the ground's colour keeps bars apart that touch
+        wide = scale * (finish - arrival) > 2.5  # an edge in the background's colour separates bars that touch
         looks = ((~late & wide, colour, GROUND), (~late & ~wide, colour, colour), (late, "white", LATE))
         for which, face, edge in looks:
             if not which.any():
@@ -202,7 +202,7 @@ class Schedule:
             )  # fmt: skip
 
     def _draw_deadlines(self, axes: Any, robot: int, base: float, colour: str) -> None:
-        """A tick for each deadline, joined to the end of its task's bar; what lies beyond the axis is at its end."""
+        """A tick for each deadline, joined to the end of its task's bar; those beyond the axis are at its end."""
         visits, bottom = self.score.schedule[robot], base + self.bar
         above, below = self._counts(robot)
         lines, due, at = [], [], []

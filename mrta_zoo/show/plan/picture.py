@@ -1,4 +1,4 @@
-"""A picture of a plan: the routes on the map, and what each robot does when.
+"""A picture of a plan: the routes on the map, and the schedule of each robot.
 
 Needs matplotlib (``mrta_zoo[plot]``), which it uses without its global state, so that it draws in any thread, with
 or without a display.
@@ -23,11 +23,12 @@ from mrta_zoo.verify import Score, verify
 from mrta_zoo.wording import counted
 
 WIDTH, TOP, BOTTOM, SIDE, APART = 1224.0, 62.0, 54.0, 14.0, 26.0
-"""Of the picture, above and below the map and the chart, beside them, and between them; in points, 1/72 inch."""
+"""Width of the picture, and margins above and below the map and the chart, beside them, and between them; in points,
+1/72 of an inch."""
 MAP = (400.0, 400.0)
-"""The most that the map may be."""
+"""The largest that the map may be."""
 LEAST, MOST = 250.0, 2700.0
-"""How low and how high the chart is; the map is no lower either, if it is as wide as high."""
+"""The least and greatest height of the chart; a square map is no lower either."""
 TITLE, LEGEND = 13.0, 9.0
 """Sizes of text."""
 NARROW = 380.0
@@ -40,7 +41,7 @@ def draw_plan(scenario: Scenario, plan: Plan, score: Score | None = None) -> Lit
     Args:
         scenario: what was planned.
         plan: its plan.
-        score: the verifier's, if it is already known.
+        score: the verifier's score, if it is already known.
 
     Raises:
         PlanError: if the plan does not fit the scenario.
@@ -93,7 +94,7 @@ def _title(scenario: Scenario, plan: Plan, score: Score) -> str:
 
 
 def _legend_below(axes: Any, handles: list[Any], width: float, below: float) -> None:
-    """A legend so many points below axes, in two lines if there is no room for one."""
+    """A legend `below` points below the axes, in two lines if one line has no room."""
     height = axes.get_position().height * axes.figure.get_figheight() * 72
     columns = len(handles) if width >= NARROW else -(-len(handles) // 2)
     axes.legend(

@@ -1,4 +1,4 @@
-"""Where a plan's robots go: its routes on the map.
+"""A plan's routes on the map.
 
 Needs matplotlib (``mrta_zoo[plot]``), which it uses without its global state. Sizes are in points.
 """
@@ -28,13 +28,13 @@ with importing("plot", "a picture"):
 
 LATE = "#000000"
 MOST_NUMBERED = 150
-"""Tasks on the map that still get their number, and robots that get a label of their own."""
+"""With more tasks than this, or more robots, they get no labels."""
 MARGIN = 0.035
-"""Around the map, as a share of its longer side."""
+"""Margin around the map, as a share of its longer side."""
 LABEL, TICK = 6.5, 8.0
 """Sizes of text."""
 LONGEST = 60.0
-"""Of a task's label."""
+"""The widest that a task's label may be."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ class RouteMap:
     Attributes:
         scenario: what was planned.
         plan: its plan.
-        score: the verifier's.
+        score: the verifier's score.
         low: the lowest x and y that it shows.
         scale: points per distance unit.
         size: width and height.
@@ -59,7 +59,7 @@ class RouteMap:
 
     @classmethod
     def of(cls, scenario: Scenario, plan: Plan, score: Score, room: tuple[float, float]) -> RouteMap:
-        """The map within a room of some width and height."""
+        """The largest map that fits within a width and a height."""
         low, size = shown_box(scenario)
         margin = MARGIN * float(size.max())
         low, high = low - margin, low + size + margin
@@ -98,12 +98,12 @@ class RouteMap:
         axes.set_title("Routes (distance units)", fontsize=10, color=FAINT, loc="left")
 
     def numbered(self) -> frozenset[int]:
-        """The robots that it calls by number although they have names, which lack room."""
+        """The robots labelled by number although they have names, as these have no room."""
         return frozenset(each.robot for each in self._starts() if self.scenario.robot_names and each.text.isdecimal()
                          and each.text != self.scenario.robot_name(each.robot))  # fmt: skip
 
     def _ticks(self, side: int) -> list[float]:
-        """Round numbers along x (0) or y (1), as many as have room."""
+        """Round numbers along x (0) or y (1), as many as there is room for."""
         low, length = float(self.low[side]), self.size[side]
         high = low + length / self.scale
         for most in range(6, 1, -1):
@@ -170,7 +170,7 @@ class RouteMap:
             )  # fmt: skip
 
     def _draw_labels(self, axes: Any, taken: Any, starts: Sequence[StartLabel]) -> None:
-        """Names or numbers of tasks where they have room; tasks that robots do go first."""
+        """Names or numbers of tasks where there is room; tasks that robots do go first."""
         order = np.argsort(~taken, kind="stable")
         among = self.scenario.task_names
         names = [fitted(self.scenario.task_name(task), LONGEST, LABEL, among=among) for task in order.tolist()]

@@ -1,4 +1,4 @@
-"""What a plan's robots are called where they start on the map, so that none hides another.
+"""Labels where a plan's robots start on the map, placed so that none hides another.
 
 Needs matplotlib (``mrta_zoo[plot]``), which it uses without its global state. Lengths are in points, 1/72 of an inch.
 """
@@ -16,15 +16,15 @@ from mrta_zoo.show.lettering import covers, fitted, text_width
 from mrta_zoo.show.palette import INK, robot_colour
 
 SIZE, PAD, HIGH = 8.0, 0.3, 14.0
-"""Of a label: of its letters, around them as a share of that, and its height."""
+"""Of a label: the size of its letters, the padding around them as a share of that, and its height."""
 HIDES = 11.0
 """Labels whose places are nearer than this along both axes would hide each other."""
 LONGEST, SHORTER = 60.0, 35.0
-"""Of a name, and where that has no room."""
+"""The widest that a name may be, and the widest where that has no room."""
 ASIDE = (0.0, 0.5, -0.5, 1.0, -1.0)
 """How far labels may lie beside the place of their robots, in halves of their size: at 1 they touch it."""
 MOST_NAMES, MOST_NUMBERS, IN_A_ROW = 6, 12, 4
-"""Robots at one place that have their names there, their numbers, and numbers side by side; of more only the count."""
+"""The most robots at one place that are labelled by name, by number, and in one row; more are only counted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class StartLabel:
     Attributes:
         robot: whose it is; the first, if it is that of several.
         text: what it says.
-        colour: its ground.
+        colour: its background.
         shift: from the robot's start to its middle.
         box: what it covers: left, bottom, right, top.
     """
@@ -51,13 +51,13 @@ def start_labels(
 ) -> list[StartLabel]:
     """The labels of all robots: their names where there is room, or else their numbers.
 
-    Those of robots that start at one place, or nearly, lie side by side; names lie one above the other.
+    Labels of robots that start at one place, or nearly, lie side by side; names lie one above the other.
 
     Args:
         places: (M, 2) where the robots start.
-        names: (M,) theirs, or none.
-        clear: (K, 4) boxes that names must not cover, nor several numbers, if they can help it.
-        frame: width and height; these lie within.
+        names: (M,) their names; empty if they have none.
+        clear: (K, 4) boxes that names must not cover, and that several numbers avoid if they can.
+        frame: its width and height; labels lie within.
     """
     groups = _groups(places)
     blocks = [_block(places, group, _numbers(group), IN_A_ROW) for group in groups]
@@ -76,7 +76,7 @@ def start_labels(
 
 
 def _groups(places: FloatArray) -> list[list[int]]:
-    """Robots whose labels would hide each other, together."""
+    """Groups of robots whose labels would hide each other."""
     groups: list[list[int]] = []
     for robot, place in enumerate(places):
         near = [group for group in groups if (np.abs(places[group] - place).max(axis=1) < HIDES).any()]
@@ -93,7 +93,7 @@ def _free(
     places: FloatArray, group: Sequence[int], texts: Sequence[str], columns: int, taken: FloatArray,
     frame: tuple[float, float],
 ) -> list[StartLabel]:  # fmt: skip
-    """Labels as near to the robots' place as they lie in the frame and cover nothing; none if they cannot."""
+    """Labels as near to the robots' place as possible, inside the frame and covering nothing; none without room."""
     for right, up in sorted(product(ASIDE, ASIDE), key=lambda each: abs(each[0]) + abs(each[1])):
         block = _block(places, group, texts, columns, (right, up))
         boxes = np.array([each.box for each in block])
@@ -105,7 +105,7 @@ def _free(
 def _block(
     places: FloatArray, group: Sequence[int], texts: Sequence[str], columns: int, aside: tuple[float, float] = (0, 0)
 ) -> list[StartLabel]:
-    """Labels in rows of so many, over the middle of their places or `aside` of it by so many halves of their size."""
+    """Labels in rows of `columns`, centred on the robots' places or `aside` by so many halves of the block's size."""
     columns = min(columns, len(texts))
     size = np.array((max(map(_width, texts)), HIGH))
     grid = np.array((columns, -(-len(texts) // columns)))

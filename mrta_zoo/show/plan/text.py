@@ -17,7 +17,7 @@ WHY: dict[Reason, str] = {
 
 
 def schedule_table(scenario: Scenario, score: Score) -> Sheet:
-    """A row for each task that is done, robot by robot; times in time units. What has no name is counted from 0."""
+    """One row per task that is done, robot by robot; times in time units. What has no name is numbered from 0."""
     rows: list[tuple[str, ...]] = []
     ends, digits = [], decimals(score.makespan, 2)
     for robot, visits in enumerate(score.schedule):
@@ -33,12 +33,12 @@ def schedule_table(scenario: Scenario, score: Score) -> Sheet:
 
 
 def proven(score: Score, bound: int | None) -> str:
-    """What is known of the best plan, on a line, given the most tasks that any plan can complete; empty if nothing."""
+    """A line on what is proven of the best plan, given the most tasks that any plan can complete; "" if nothing is."""
     if bound is None:
         return ""
     if score.completed == bound:
         return "proven optimal: no plan completes more tasks"
-    return f"not proven optimal: it may be; no plan completes more than {counted(bound, 'task')}"
+    return f"not proven optimal, though it may be; no plan completes more than {counted(bound, 'task')}"
 
 
 def totals(score: Score) -> str:
@@ -53,7 +53,7 @@ def totals(score: Score) -> str:
 
 
 def missed(scenario: Scenario, plan: Plan, score: Score) -> list[str]:
-    """The tasks that a plan does not complete, by name, a line for each reason there is."""
+    """The tasks that a plan does not complete, by name, one line per reason."""
     tasks: dict[str, list[int]] = {
         words: [each.task for each in left_out(scenario, plan) if each.reason == reason]
         for reason, words in WHY.items()

@@ -1,4 +1,4 @@
-"""A mission as a small table of text."""
+"""A mission as text: a small table."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def headline(mission: Mission) -> str:
 
 
 def describe(mission: Mission) -> str:
-    """The state of a mission: a line on the tasks, one on those due next, one for each robot with its last tasks."""
+    """The state of a mission: one line on the tasks, one on those due next, and one per robot with its last tasks."""
     scenario = mission.scenario
     robots = scenario.robot_names or [f"robot_{robot}" for robot in range(scenario.num_robots)]
     trails = [_trail(mission, robot) for robot in range(scenario.num_robots)]
@@ -57,7 +57,7 @@ def _due_next(mission: Mission) -> str:
 
 
 def _trail(mission: Mission, robot: int) -> str:
-    """The tasks a robot has behind it, the latest last."""
+    """The last tasks that a robot has finished, the latest last."""
     route = mission.routes[robot]
     behind = route[:-1] if mission.heading[robot] >= 0 else route
     earlier = "… " if len(behind) > _LONGEST_TRAIL else ""
@@ -67,7 +67,7 @@ def _trail(mission: Mission, robot: int) -> str:
 
 def _doing(mission: Mission, robot: int, doing: str) -> str:
     task, time = mission.heading[robot], Digits.of(mission.scenario).time
-    name = mission.scenario.task_name(task)  # of the last task where there is none, and not shown
+    name = mission.scenario.task_name(task)  # without a task under way, that of the last task, which is not shown
     when = f"until {time(mission.ready[robot])}, deadline {time(mission.scenario.deadline[task])}"
     return {
         "acting": "chooses now",
@@ -79,5 +79,5 @@ def _doing(mission: Mission, robot: int, doing: str) -> str:
 
 
 def _filled(text: str, width: int) -> str:
-    """Text with blanks behind it: characters of some scripts are two columns wide."""
+    """Text padded with blanks: characters of some scripts are two columns wide."""
     return text + " " * (width - cell_len(text))

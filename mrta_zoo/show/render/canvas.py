@@ -1,6 +1,6 @@
-"""Drawing on pixels with pygame: the few shapes and the text that pictures of missions are made of.
+"""A canvas of pixels, with the few shapes and the text that pictures of missions are made of.
 
-Needs pygame (``mrta_zoo[render]``), of which it uses no display, so that it draws in any thread and on any machine.
+Needs pygame (``mrta_zoo[render]``) but not its display, so that it draws in any thread and on any machine.
 """
 
 from __future__ import annotations
@@ -29,11 +29,11 @@ _IN_NO_FONT = "\uffff"
 
 
 class Canvas:
-    """A picture under way. Coordinates and sizes are in pixels of the finished picture, from its upper left corner.
+    """A picture being drawn. Coordinates and sizes are in pixels of the finished picture, from its upper left corner.
 
     Args:
         size: width and height in pixels.
-        background: its colour, as all colours ``#rrggbb``.
+        background: its colour; this and all other colours are ``#rrggbb``.
     """
 
     def __init__(self, size: tuple[int, int], background: str) -> None:
@@ -46,16 +46,16 @@ class Canvas:
         return pygame.transform.smoothscale(self._surface, self.size)
 
     def rectangle(self, corner: Point, size: Point, colour: str) -> None:
-        """Filled, from its upper left corner."""
+        """A filled rectangle, given its upper left corner."""
         self._surface.fill(colour, pygame.Rect(_big(corner), _big(size)))
 
     def square(self, centre: Point, side: float, fill: str, edge: str, width: float) -> None:
-        """Filled, with an edge of so many pixels."""
+        """A filled square with an edge `width` pixels wide."""
         for length, colour in ((side, edge), (side - 2 * width, fill)):
             self.rectangle((centre[0] - length / 2, centre[1] - length / 2), (length, length), colour)
 
     def disc(self, centre: Point, radius: float, fill: str, edge: str, width: float) -> None:
-        """Filled, with an edge of so many pixels."""
+        """A filled disc with an edge `width` pixels wide."""
         place = _big(centre)
         pygame.draw.circle(self._surface, edge, place, SCALE * radius)
         pygame.draw.circle(self._surface, fill, place, SCALE * (radius - width))
@@ -72,25 +72,25 @@ class Canvas:
             self.line(_between(start, end, a), _between(start, end, b), colour, width)
 
     def cross(self, centre: Point, radius: float, colour: str, width: float) -> None:
-        """An x."""
+        """A cross in the shape of an x."""
         x, y = centre
         self.line((x - radius, y - radius), (x + radius, y + radius), colour, width)
         self.line((x - radius, y + radius), (x + radius, y - radius), colour, width)
 
     def text(self, text: str, place: Point, size: float, colour: str, align: float = 0.0) -> None:
-        """One line, vertically centred on `place`; `align` 0 begins there, 0.5 is centred, 1 ends there."""
+        """One line of text, vertically centred on `place`; with `align` 0 it begins there, with 1 it ends there."""
         image = _written(text, round(SCALE * size), colour)
         x, y = _big(place)
         self._surface.blit(image, (x - align * image.get_width(), y - image.get_height() / 2))
 
 
 def text_width(text: str, size: float) -> float:
-    """How wide a line of text is, in pixels of the finished picture."""
+    """The width of a line of text, in pixels of the finished picture."""
     return _font(round(SCALE * size)).size(_shown(text))[0] / SCALE
 
 
 def fitted(name: str, otherwise: str, size: float, room: float, among: Sequence[str] = ()) -> str:
-    """A name in so many pixels, shortened if need be; `otherwise` if the font lacks one of its characters."""
+    """A name within `room` pixels, shortened if need be; `otherwise` if the font lacks one of its characters."""
     metrics = _font(round(SCALE * size)).metrics
     if metrics(_IN_NO_FONT)[0] in metrics(_shown(name)):  # which it draws as boxes
         return otherwise
@@ -116,7 +116,7 @@ def _written(text: str, size: int, colour: str) -> pygame.Surface:
 
 
 def _shown(text: str) -> str:
-    """Text that pygame takes, and on one line: what has no letter is a space."""
+    """Text that pygame accepts, on one line: unprintable characters become spaces."""
     return "".join(letter if letter.isprintable() else " " for letter in text)
 
 

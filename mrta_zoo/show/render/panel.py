@@ -1,4 +1,4 @@
-"""The column beside the map: what the marks mean, with counts, and what each robot does."""
+"""The panel beside the map: what the marks mean, with counts, and what each robot does."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _TOP, _ROW = 60.0, 22.0
 _WIDTH = 324.0
 _LEGEND_ROWS = 7
 _ONE_COLUMN, _MOST_LISTED = 20, 76
-"""Robots for which there is a sentence each; and for which there is a word each, in two columns."""
+"""The most robots that get a sentence each, and that get a few words each, in two columns."""
 
 
 def draw_panel(canvas: Canvas, mission: Mission, doing: Sequence[str], left: float, bottom: float) -> None:
@@ -81,7 +81,7 @@ def _draw_legend(canvas: Canvas, mission: Mission, left: float) -> None:
 
 
 def _sentence(mission: Mission, robot: int, doing: str) -> str:
-    """What a robot does and, where robots have names, which one: its number is beside it."""
+    """What a robot does and, if robots have names, its name; its number stands beside the sentence."""
     task, time = mission.heading[robot], Digits.of(mission.scenario).time
     until, due = time(mission.ready[robot]), time(mission.scenario.deadline[task])
     who = "{robot}: " if mission.scenario.robot_names else ""
@@ -108,7 +108,7 @@ def _words(mission: Mission, robot: int, doing: str) -> str:
 
 
 def _named(what: str, mission: Mission, robot: int, size: float, room: float) -> str:
-    """A sentence with the names of a robot and its task put in, as much of them as there is room for."""
+    """A sentence with the names of a robot and its task filled in, as much of them as there is room for."""
     scenario, task = mission.scenario, mission.heading[robot]
     left = (room - text_width(what.format(robot="", task=""), size)) / max(what.count("{"), 1)
     return what.format(

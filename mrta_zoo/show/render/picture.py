@@ -1,4 +1,4 @@
-"""A mission as a picture: the map with tasks and trails, and a column that says what each robot does.
+"""A mission as a picture: the map with tasks and trails, and a panel that says what each robot does.
 
 Needs pygame (``mrta_zoo[render]``), but no display.
 """
@@ -21,20 +21,20 @@ from mrta_zoo.show.render.whereabouts import whereabouts
 from mrta_zoo.show.view import Digits, shown_box, shown_time
 
 SIZE = (1040, 720)
-"""Width and height in pixels; both even, as video formats want."""
+"""Width and height in pixels; both even, as video formats require."""
 
 _LEFT, _TOP, _WIDTH, _HEIGHT = 40.0, 52.0, 636.0, 636.0
 _PANEL_LEFT = 704.0
 _MOST_NUMBERED = 150
-"""Tasks on the map that still get their number or name."""
+"""The most tasks that get their number or name on the map."""
 _LONGEST_NAME = 64.0
-"""Of a task on the map, in pixels."""
+"""The widest that the name of a task on the map may be, in pixels."""
 _RECENT_LEGS = 4
-"""Of each trail, drawn ever fainter; those before are as faint as the last of them."""
+"""The last legs of each trail, drawn fainter with age; all earlier ones are as faint as the oldest of them."""
 
 
 def draw(mission: Mission) -> pygame.Surface:
-    """The mission at this moment, robots in transit where they are now, (1040, 720) pixels."""
+    """The mission at this moment, with robots in transit where they are now; 1040 × 720 pixels."""
     canvas = Canvas(SIZE, "#ffffff")
     frame = _Frame.around(mission.scenario)
     name = mission.scenario.name
@@ -60,7 +60,7 @@ def draw(mission: Mission) -> pygame.Surface:
 
 @dataclass(frozen=True, slots=True)
 class _Frame:
-    """What is shown, by its lowest x and y and its size; pixels per distance unit; and its lower left pixel."""
+    """The part of the plane shown, by its lowest x and y and size; pixels per distance unit; its lower left pixel."""
 
     low: tuple[float, float]
     size: tuple[float, float]
@@ -85,7 +85,7 @@ def _draw_ground(canvas: Canvas, frame: _Frame) -> None:
     right, top = frame.pixel((low_x + frame.size[0], low_y + frame.size[1]))
     canvas.rectangle((left - margin, top - margin), (right - left + 2 * margin, bottom - top + 2 * margin), GROUND)
     step = _round_step(max(frame.size) / 5)
-    written = 0.0  # until where there are numbers below
+    written = 0.0  # how far along the numbers below already reach
     for x in _round_numbers(low_x, frame.size[0], step):
         at, width = frame.pixel((x, low_y))[0], text_width(_written(x), 14)
         canvas.line((at, top - margin), (at, bottom + margin), "#ffffff", 1.5)
@@ -95,13 +95,13 @@ def _draw_ground(canvas: Canvas, frame: _Frame) -> None:
     for y in _round_numbers(low_y, frame.size[1], step):
         at = frame.pixel((low_x, y))[1]
         canvas.line((left - margin, at), (right + margin, at), "#ffffff", 1.5)
-        inside = text_width(_written(y), 14) > left - margin - 4  # there is no room beside the map for long numbers
+        inside = text_width(_written(y), 14) > left - margin - 4  # long numbers have no room beside the map
         place = (left - margin + 3, at - 8) if inside else (left - margin - 4, at)
         canvas.text(_written(y), place, 14, FAINT, align=0.0 if inside else 1.0)
 
 
 def _draw_trail(canvas: Canvas, frame: _Frame, mission: Mission, robot: int, now: Point, detail: float) -> None:
-    """Where it came from, fainter with age, and dashed where it is heading."""
+    """Where a robot came from, fainter with age, and where it is heading, dashed."""
     scenario, route = mission.scenario, mission.routes[robot]
     colour, start = robot_colour(robot), frame.pixel(tuple(scenario.robot_xy[robot].tolist()))
     under_way = mission.heading[robot] >= 0
@@ -132,12 +132,12 @@ def _draw_tasks(canvas: Canvas, frame: _Frame, mission: Mission, detail: float) 
             canvas.cross(place, 4.2 * detail, MISSED, 2.2 * detail)
         if numbered:
             name = fitted(scenario.task_name(task), str(task), 13, _LONGEST_NAME, scenario.task_names)
-            left = place[0] + 6 + text_width(name, 13) > _PANEL_LEFT  # or it would run into the column beside the map
+            left = place[0] + 6 + text_width(name, 13) > _PANEL_LEFT  # or it would run into the panel
             canvas.text(name, (place[0] - 6 if left else place[0] + 6, place[1] - 8), 13, FAINT, align=float(left))
 
 
 def _round_numbers(low: float, size: float, step: float) -> list[float]:
-    """The multiples of a step within a range, its ends included."""
+    """The multiples of a step within a range, including its ends."""
     first, last = np.ceil(low / step - 0.01), np.floor((low + size) / step + 0.01)
     return [step * number + 0.0 for number in np.arange(first, last + 1).tolist()]  # which is never -0.0
 

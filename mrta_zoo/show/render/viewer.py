@@ -1,4 +1,4 @@
-"""What an environment renders with: text, picture or window, by its render mode."""
+"""The viewer of an environment: renders text, a picture or a window, by render mode."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 RENDER_MODES = ("ansi", "human", "rgb_array")
 RENDER_FPS = 10
-"""Frames a second of the window, and of videos unless asked for otherwise."""
+"""Frames per second of the window, and of videos by default."""
 
 
 class Viewer:

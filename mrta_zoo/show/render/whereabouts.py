@@ -1,4 +1,4 @@
-"""Where a robot is at this moment, between the places where it decides."""
+"""Whereabouts: where a robot is at this moment, even between tasks, and what it is doing."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mrta_zoo.rules import travel_time, visit
 
 @dataclass(frozen=True, slots=True)
 class Whereabouts:
-    """Where a robot is and what it does."""
+    """Where a robot is and what it is doing."""
 
     x: float
     y: float

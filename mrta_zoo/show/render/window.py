@@ -18,11 +18,11 @@ DRIVER_VARIABLES = ("SDL_VIDEODRIVER", "SDL_VIDEO_DRIVER")
 class Window:
     """Shows one picture after another; opens with the first.
 
-    Once its user has closed it, it stays closed: showing a picture then does nothing, and the mission goes on unseen.
+    Once the user has closed it, it stays closed: showing a picture then does nothing, and the mission goes on unseen.
 
     Args:
         title: in its bar.
-        fps: pictures a second at most, > 0; `show` waits accordingly.
+        fps: the most pictures per second, > 0; `show` waits accordingly.
     """
 
     def __init__(self, title: str, fps: int) -> None:
@@ -32,10 +32,10 @@ class Window:
         self._dismissed = False
 
     def __reduce__(self) -> tuple[type[Window], tuple[str, int]]:
-        return type(self), (self._title, self._fps)  # the copy of an environment opens a window of its own
+        return type(self), (self._title, self._fps)  # the copy of an environment opens its own window
 
     def show(self, picture: pygame.Surface) -> None:
-        """Show `picture`, and answer what the window system has sent meanwhile.
+        """Show `picture`, and handle the events that the window has received meanwhile.
 
         Raises:
             ConfigError: if there is no display.
@@ -62,7 +62,7 @@ class Window:
 def _open(title: str, size: tuple[int, int]) -> pygame.Surface:
     try:
         pygame.display.init()
-        # Where there is no display SDL may choose by itself to draw where nobody sees it.
+        # Without a display SDL may choose by itself to draw where nobody sees it.
         if pygame.display.get_driver() in UNSEEN and not any(name in os.environ for name in DRIVER_VARIABLES):
             pygame.display.quit()
             raise pygame.error("there is no display")

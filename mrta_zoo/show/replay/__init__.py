@@ -1,4 +1,4 @@
-"""Episodes as a page to be looked at in a browser: one or two traces of the same scenario, side by side."""
+"""Replay: a page for the browser that plays one trace, or two of the same scenario side by side."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""What the page knows of an episode, as it is written into it. The page itself knows no rules: all times are from here.
+"""The data of a replay page: episodes, as written into it. The page knows no rules: all times come from here.
 
-Rows are written as JSON arrays, in the order of their fields, as there are many.
+Visits and candidates are JSON arrays, in the order of their fields, as there are many.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from mrta_zoo.show.view import Digits, shown_box, shown_time
 from mrta_zoo.trace import Choice, Trace
 
 MOST_CANDIDATES, MOST_MASKED = 10, 4
-"""Tasks listed at each decision: the best of those that may be chosen, and the nearest of those that may not."""
+"""How many tasks are listed at each decision: the best of those that may be chosen, and the nearest of the others."""
 
 
 class VisitJson(msgspec.Struct, frozen=True, array_like=True):
@@ -27,12 +27,12 @@ class VisitJson(msgspec.Struct, frozen=True, array_like=True):
 
     Attributes:
         task: the task.
-        decision: the one to take it.
+        decision: the decision that takes it.
         leave: when the robot leaves for it.
-        arrive: when it gets there.
-        finish: when it is done.
+        arrive: when the robot gets there.
+        finish: when the task is finished.
         completed: whether that is by the deadline.
-        lane: where in the chart the line to its deadline lies, see `lanes.deadline_lanes`.
+        lane: the chart's lane for the line to its deadline, see `lanes.deadline_lanes`.
     """
 
     task: int
@@ -45,16 +45,16 @@ class VisitJson(msgspec.Struct, frozen=True, array_like=True):
 
 
 class CandidateJson(msgspec.Struct, frozen=True, array_like=True):
-    """A task at a decision, as the acting robot has it before it; see `debug.outlook.Prospect`.
+    """A task at a decision, as the acting robot sees it; see `debug.outlook.Prospect`.
 
     Attributes:
         task: the task.
         distance: from the robot.
-        finish: when it would be done.
+        finish: when it would be finished.
         reason: a `rules.MaskReason`.
-        note: who has it or else could do it, or why it may not be chosen.
+        note: who took it or who else could do it, or why it may not be chosen.
         probability: the policy's; None if it has none.
-        percent: the same in words.
+        percent: the same as text.
     """
 
     task: int
@@ -70,13 +70,13 @@ class DecisionJson(msgspec.Struct, frozen=True):
     """A decision: who chose what, when, and among which tasks.
 
     Attributes:
-        time: when.
-        robot: whose.
-        task: the one taken; None if the robot stays for good.
+        time: when it is made.
+        robot: who makes it.
+        task: the task taken; None if the robot stays for good.
         advice: the task that the policy would have taken, where somebody else decided.
         reasons: number of tasks by `rules.MaskReason`.
-        candidates: those that may be chosen, the likeliest first, or without probabilities those finished first, then
-            the nearest of those that may not.
+        candidates: the tasks that may be chosen, by probability or else by finish, then the nearest of those that may
+            not.
     """
 
     time: float
@@ -112,7 +112,7 @@ class EpisodeJson(msgspec.Struct, frozen=True):
 
 
 class PlaceJson(msgspec.Struct, frozen=True):
-    """The scenario, as far as the page shows it, and which part of plane and time, see `mrta_zoo.show.view`."""
+    """The scenario, as far as the page shows it, and the part of plane and time shown, see `mrta_zoo.show.view`."""
 
     name: str
     low: tuple[float, float]
@@ -122,27 +122,27 @@ class PlaceJson(msgspec.Struct, frozen=True):
     horizon: float
     """The latest deadline that can matter."""
     end: float
-    """Of the time shown."""
+    """The end of the time shown."""
     tasks: list[tuple[float, float, float, float]]
     """x, y, deadline and workload of each."""
     robots: list[tuple[float, float, float, float]]
     """x, y, capacity and speed of each."""
     task_names: list[str]
-    """What people call each: its name, or its number."""
+    """The name of each, or else its number."""
     robot_names: list[str]
-    """Likewise: its name, or "robot" and its number."""
+    """The name of each, or else "robot" and its number."""
     named: bool
-    """Whether robots have names, so that their numbers on the map are to be explained."""
+    """Whether robots have names, so that the page explains their numbers on the map."""
     digits: tuple[int, int]
-    """After the point, of times and of distances."""
+    """Digits after the point, of times and of distances."""
 
 
 def place_of(scenario: Scenario, makespan: float) -> PlaceJson:
     """The scenario for the page.
 
     Args:
-        scenario: to be shown.
-        makespan: of the longest episode.
+        scenario: the scenario.
+        makespan: that of the longest episode.
     """
     low, size = shown_box(scenario)
     tasks = np.column_stack((scenario.task_xy, scenario.deadline, scenario.workload))
@@ -164,7 +164,7 @@ def place_of(scenario: Scenario, makespan: float) -> PlaceJson:
 
 
 def episode_of(trace: Trace) -> EpisodeJson:
-    """The episode for the page; its visits' times are the verifier's."""
+    """The episode for the page; the times of its visits are the verifier's."""
     score = trace.score
     lanes = [deadline_lanes(visits) for visits in score.schedule]
     routes: list[list[VisitJson]] = [[] for _ in range(trace.scenario.num_robots)]

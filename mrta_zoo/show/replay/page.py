@@ -1,4 +1,4 @@
-"""The replay as one self-contained page of HTML: data and drawing code in one file, which opens with no network."""
+"""The replay page: one self-contained HTML file with data and drawing code, which needs no network."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ MOST_SIDES = 2
 
 
 class DocumentJson(msgspec.Struct, frozen=True):
-    """What is written into the page."""
+    """The data that is written into the page."""
 
     place: PlaceJson
     episodes: list[EpisodeJson]
     cost: str
-    """What the cost of an episode is."""
+    """The definition of the cost of an episode."""
     colours: dict[str, str | tuple[str, ...]]
 
 

@@ -1,4 +1,4 @@
-"""Where the command line prints: text as it is, without markup; full width and plain if it is not a terminal.
+"""Consoles of the command line: text printed literally, plain and at full width if they are not terminals.
 
 On a terminal, lines break between words.
 """
@@ -31,7 +31,7 @@ BAR_WIDTH = 72
 
 
 class LiteralConsole(Console):
-    """A console that prints text as it is: names may look like markup, and control characters in them are spelt out.
+    """A console that prints text literally: names may look like markup, and control characters in them are spelt out.
 
     Args:
         options: of rich's `Console`.
@@ -41,11 +41,11 @@ class LiteralConsole(Console):
         super().__init__(markup=False, highlight=False, emoji=False, **options)
 
     def render_str(self, text: str, **options: Any) -> Text:
-        """The text, for every string that is printed or stands in a table."""
+        """The text of every string that is printed or stands in a table."""
         return super().render_str(spelt_out(text), **options)
 
     def on_broken_pipe(self) -> NoReturn:
-        """Leave to the command what becomes of a reader that has gone, where rich would end the process."""
+        """Let the command handle a reader that has gone, where rich would end the process."""
         raise  # the BrokenPipeError that is being handled
 
 
@@ -60,7 +60,7 @@ def messages_console() -> LiteralConsole:
 
 
 def say(console: Console, text: str) -> None:
-    """Print sentences as they are; on a terminal folded between words, of which one that is too long runs over."""
+    """Print sentences literally; on a terminal, lines break between words, and a word that is too long runs over."""
     for line in text.split("\n"):
         folded = fold(line, console.width) if console.is_terminal else [line]
         for each in folded:
@@ -71,7 +71,7 @@ def preparing(what: str = "preparing") -> AbstractContextManager[object]:
     """A sign of life on standard error while methods are made ready, if that is a terminal.
 
     Args:
-        what: is going on.
+        what: what is going on.
     """
     console = messages_console()
     if not console.is_terminal:
@@ -81,12 +81,12 @@ def preparing(what: str = "preparing") -> AbstractContextManager[object]:
 
 
 def fitting(columns: Sequence[ProgressColumn], console: Console) -> Sequence[ProgressColumn]:
-    """The columns of a progress bar or, where a terminal has no room for them, the first alone."""
+    """The columns of a progress bar or, if a terminal has no room for them, only the first."""
     return columns if console.width >= BAR_WIDTH else columns[:1]
 
 
 def progress_bar() -> Progress:
-    """A bar on standard error that goes away when done; nothing at all if that is no terminal."""
+    """A bar on standard error that disappears when done; nothing at all if that is not a terminal."""
     console = messages_console()
     columns = (
         MofNCompleteColumn(),
@@ -104,5 +104,5 @@ def progress_bar() -> Progress:
 
 
 def warn(sentence: str) -> None:
-    """Say on standard error what is no error, but may be a mistake."""
+    """Warn on standard error of something that may be a mistake."""
     print(f"warning: {sentence}", file=sys.stderr)

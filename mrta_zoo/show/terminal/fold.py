@@ -1,4 +1,4 @@
-"""Text fit for a terminal: in lines of a given width, in which no word, and so no number, is broken."""
+"""Text folded for a terminal: lines of a given width in which no word, and so no number, is broken."""
 
 from __future__ import annotations
 
@@ -6,19 +6,19 @@ import shutil
 import textwrap
 
 NARROWEST, WIDEST = 40, 100
-"""Columns between which help is easy to read; it has those of the terminal within these bounds."""
+"""Widths between which help is easy to read, in columns; within these bounds it is as wide as the terminal."""
 
 JOINERS = "\u200c\u200d\u200e\u200f"
 """Characters without a shape of their own that writing needs: joiners of letters or emoji, and marks of direction."""
 
 
 def spelt_out(text: str) -> str:
-    """The text with what would steer a terminal in the form that it has in Python."""
+    """The text with characters that would control a terminal written as Python escapes."""
     return "".join(c if c.isprintable() or c in "\n\t" or c in JOINERS else ascii(c)[1:-1] for c in text)
 
 
 def fold(text: str, width: int, indent: str = "") -> list[str]:
-    """Lines of so many characters at most, unless a word is longer; one at least.
+    """Lines of at most `width` characters, unless a word is longer; at least one line.
 
     Args:
         text: one line.
@@ -32,15 +32,15 @@ def fold(text: str, width: int, indent: str = "") -> list[str]:
 
 
 def help_width() -> int:
-    """Columns for help."""
+    """The width of help, in columns."""
     return min(max(shutil.get_terminal_size().columns, NARROWEST), WIDEST)
 
 
 def clipped(text: str, width: int) -> str:
-    """As many words as there is room for, with a mark if these are not all."""
+    """As many words as there is room for, with an ellipsis if these are not all."""
     if len(text) <= width:
         return text
     words = fold(text, width - 1)[0]
-    if words[-1:].isdigit():  # which must not look cut
+    if words[-1:].isdigit():  # a number must not look cut
         words = fold(text, width - 2)[0] + " "
     return f"{words}…"

@@ -1,4 +1,4 @@
-"""Tables at a terminal of any width: what is in a cell is never cut, nor broken within a word."""
+"""Sheets: tables for a terminal of any width, in which no cell is cut or broken within a word."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ class Sheet:
         return table
 
     def _sentence(self, row: Sequence[str], width: int) -> list[str]:
-        """Headings with their cells, in lines; without those of empty cells."""
+        """Headings with their cells, in lines, without empty cells."""
         parts = [
             cell if cell.startswith(heading) else f"{heading} {cell}"
             for heading, cell in zip(self.headings, row, strict=True)
