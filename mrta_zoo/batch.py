@@ -149,7 +149,7 @@ class BatchMission:
         """Retire robots that became free and have no choice, until each mission has an actor or is over."""
         choice = (self._allowed & self.untaken[:, None]).any(2)
         alive = ~self.retired
-        # Whoever becomes free next with a choice acts; whoever becomes free before that without one retires.
+        # The first free robot that has a choice acts; those that are free before it and have none retire.
         when, actor = next_event(self.ready, ~(alive & choice), torch.where, _least)
         over = torch.isinf(when)
         index = torch.arange(self.ready.shape[1], device=self.ready.device)

@@ -138,7 +138,7 @@ def check_mask_rule(rule: object) -> None:
     """Check the name of a mask rule.
 
     Raises:
-        ConfigError: if there is none of that name.
+        ConfigError: if there is no such rule.
     """
     if not isinstance(rule, str) or rule not in MASK_RULES:
         raise ConfigError(f"mask_rule is {rule!r}; expected one of {', '.join(MASK_RULES)}")

@@ -16,7 +16,7 @@ BEGIN, END = "<!-- the map, by tests/layers.py -->\n", "<!-- the end of the map 
 # From the bottom up. A module may import its own layer and those before it; a package stands for its modules.
 LAYERS = (
     (
-        "what needs nothing of ours",
+        "foundations",
         (
             "mrta_zoo.errors",
             "mrta_zoo.wording",
@@ -43,14 +43,14 @@ LAYERS = (
         ),
     ),
     ("dynamics and scores", ("mrta_zoo.mission", "mrta_zoo.batch", "mrta_zoo.verify", "mrta_zoo.left_out")),
-    ("episodes and where missions come from", ("mrta_zoo.trace", "mrta_zoo.generators", "mrta_zoo.suite")),
+    ("traces and generators", ("mrta_zoo.trace", "mrta_zoo.generators", "mrta_zoo.suite")),
     ("files", ("mrta_zoo.io",)),
     ("presentation", ("mrta_zoo.show",)),
-    ("the package, and how its objects show themselves", ("mrta_zoo",)),
+    ("the package", ("mrta_zoo",)),
     ("the environment", ("mrta_zoo.env",)),
-    ("its public face", ("mrta_zoo.mrta_v0",)),
+    ("the public environment", ("mrta_zoo.mrta_v0",)),
     ("policies and solvers", ("mrta_zoo.policies",)),
-    ("looking into episodes", ("mrta_zoo.debug",)),
+    ("debugging", ("mrta_zoo.debug",)),
     ("replay pages", ("mrta_zoo.show.replay",)),
     ("training", ("mrta_zoo.train",)),
     ("evaluation", ("mrta_zoo.eval",)),

@@ -146,7 +146,7 @@ def _completed_only_by(index: int, fates: Sequence[Fate], methods: tuple[str, st
 
 
 def _table(title: str, columns: Sequence[str], rows: Sequence[Sequence[object]], most: int = 2) -> Group:
-    """A table of at most so many rows; "-" stands for None."""
+    """A table of at most `most` rows; "-" stands for None."""
     cells = [tuple("-" if value is None else str(value) for value in row) for row in rows[:most]]
     more = [Text(f"and {len(rows) - most} more (--rows)")] if len(rows) > most else []
     return Group(Sheet(title, columns, cells, left=("method",)), *more)
