@@ -208,7 +208,7 @@ def test_a_second_reference_table_is_refused(folder: Path) -> None:
     for name in ("reference.csv", "REFERENCE.CSV"):
         (folder / name).write_text("case,tasks,robots,m\nc1,3,1,2\n")
     if len([*folder.glob("[rR]*")]) == 2:  # capital letters count here
-        with pytest.raises(ScenarioError, match=r"reference\.csv: there is REFERENCE\.CSV, too; expected one"):
+        with pytest.raises(ScenarioError, match=r"reference\.csv: the folder also has REFERENCE\.CSV; expected one"):
             read_cases(folder)
 
 
