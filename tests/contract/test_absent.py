@@ -161,5 +161,5 @@ def test_the_option_is_checked() -> None:
     for make in (mrta_v0.env, mrta_v0.raw_env, mrta_v0.parallel_env):
         with pytest.raises(ConfigError, match="absent is 'dead'; expected one of omit, noop"):
             make(absent="dead")
-    with pytest.raises(ConfigError, match="absent is 'noop'; expected 'omit', for one agent acts for all"):
+    with pytest.raises(ConfigError, match="absent is 'noop'; expected 'omit', as one agent acts for all"):
         ActingRobotEnv(absent="noop")
