@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from bisect import bisect_left
 from collections.abc import Sequence
 from typing import Any, TypeVar, get_args, get_type_hints
 
@@ -30,9 +31,7 @@ def read_document(path: StrPath, kind: type[Document], error: type[MrtaError]) -
     name = _format_of(kind)
     text = read_text(path, error)
     try:
-        document = json.loads(
-            text, parse_float=_float, parse_int=_int, parse_constant=_constant, object_pairs_hook=_object
-        )
+        document = _loads(text)
     except json.JSONDecodeError as problem:
         rest = text[problem.pos :].split("\n")[0]
         raise error(
@@ -40,7 +39,7 @@ def read_document(path: StrPath, kind: type[Document], error: type[MrtaError]) -
             f"at {shown(rest) if rest else 'the end of the line'}; expected JSON"
         ) from None
     except ValueError as problem:
-        raise error(f"{path}: {problem}") from None
+        raise error(f"{path}, line {_line_of_failure(text)}: {problem}") from None
     except RecursionError:
         raise error(f"{path} is nested too deeply; expected a {name} file") from None
     if not isinstance(document, dict):
@@ -66,6 +65,27 @@ def _check_names(document: dict[str, Any], path: StrPath, error: type[MrtaError]
         value = document.get(field)
         if isinstance(value, str):
             check_name(value, str(path), field, error)
+
+
+def _loads(text: str) -> Any:
+    """Parse JSON, without what Python's reader would let pass; raises a ValueError that says what that is."""
+    return json.loads(text, parse_float=_float, parse_int=_int, parse_constant=_constant, object_pairs_hook=_object)
+
+
+def _line_of_failure(text: str) -> int:
+    """The line that `_loads` refuses: the first whose end it does not get to, or on which a refused object ends."""
+    ends = [index for index, character in enumerate(text) if character == "\n"] + [len(text)]
+
+    def refuses(end: int) -> bool:
+        try:
+            _loads(text[:end])
+        except json.JSONDecodeError:  # the text breaks off here, and all before it is right
+            return False
+        except ValueError:
+            return True
+        return False
+
+    return bisect_left(ends, True, key=refuses) + 1
 
 
 def _int(token: str) -> int | float:
