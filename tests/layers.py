@@ -1,4 +1,4 @@
-"""The layers of the house, what each module imports, and the map of it all in docs/architecture.md.
+"""The layers of the package, the imports of each module, and the map of both in docs/architecture.md.
 
 ``python tests/layers.py`` draws the map anew.
 """
@@ -16,7 +16,7 @@ BEGIN, END = "<!-- the map, by tests/layers.py -->\n", "<!-- the end of the map 
 # From the bottom up. A module may import its own layer and those before it; a package stands for its modules.
 LAYERS = (
     (
-        "what needs nothing of ours",
+        "foundations",
         (
             "mrta_zoo.errors",
             "mrta_zoo.wording",
@@ -43,14 +43,14 @@ LAYERS = (
         ),
     ),
     ("dynamics and scores", ("mrta_zoo.mission", "mrta_zoo.batch", "mrta_zoo.verify", "mrta_zoo.left_out")),
-    ("episodes and where missions come from", ("mrta_zoo.trace", "mrta_zoo.generators", "mrta_zoo.suite")),
+    ("episodes, and sources of missions", ("mrta_zoo.trace", "mrta_zoo.generators", "mrta_zoo.suite")),
     ("files", ("mrta_zoo.io",)),
     ("presentation", ("mrta_zoo.show",)),
-    ("the package, and how its objects show themselves", ("mrta_zoo",)),
+    ("the package, with its objects in notebooks", ("mrta_zoo",)),
     ("the environment", ("mrta_zoo.env",)),
-    ("its public face", ("mrta_zoo.mrta_v0",)),
+    ("the environment's public API", ("mrta_zoo.mrta_v0",)),
     ("policies and solvers", ("mrta_zoo.policies",)),
-    ("looking into episodes", ("mrta_zoo.debug",)),
+    ("debugging", ("mrta_zoo.debug",)),
     ("replay pages", ("mrta_zoo.show.replay",)),
     ("training", ("mrta_zoo.train",)),
     ("evaluation", ("mrta_zoo.eval",)),
@@ -78,7 +78,7 @@ MODULES = modules()
 
 
 def imports(source: str) -> Iterator[str]:
-    """What a module of ours imports from us, at the top, inside functions, or for types only."""
+    """The modules of ours that a source imports, at the top, inside functions, or for types only."""
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
@@ -133,9 +133,9 @@ def needs() -> dict[str, set[str]]:
 
 
 def draw() -> str:
-    """The map as a Markdown table: one row per room, in layers from the top down, with what it uses."""
+    """The map as a Markdown table: one row per room, layer by layer from the top down, with the rooms it uses."""
     uses = needs()
-    lines = ["| layer | room | holds | uses directly |", "|---|---|---|---|"]
+    lines = ["| layer | module or package | holds | uses directly |", "|---|---|---|---|"]
     for index in reversed(range(len(LAYERS))):
         members = [module for module in MODULES if layer(module) == index]
         for number, each in enumerate(dict.fromkeys(room(module) for module in members)):

@@ -1,4 +1,4 @@
-"""Links, paths and names of modules in our Markdown pages lead somewhere. CHANGELOG.md, which is history, is left out."""
+"""Links, paths and names of modules in our Markdown pages lead somewhere; not in CHANGELOG.md, which is history."""
 
 from __future__ import annotations
 
