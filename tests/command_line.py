@@ -1,4 +1,4 @@
-"""Running the command line, and how it ends when it is used wrongly."""
+"""Running the command line in tests, and checking how it refuses."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SCENARIO = small_scenario(2, tasks=12, robots=3)
 
 
 def need(command: str) -> None:
-    """Skip a test of a command that needs what is not installed."""
+    """Skip a test whose command needs an extra that is not installed."""
     for module, commands in (("torch", {"train", "ablate", "sharing"}), ("pandas", REPORTED)):
         if command in commands:
             pytest.importorskip(module)
@@ -31,7 +31,7 @@ def script(folder: Path, text: str) -> str:
 
 
 def fails(capsys: Captured, arguments: list[str]) -> str:
-    """Run a command that ends with code 2 and one line on standard error; that line."""
+    """Run a command that must end with code 2 and one line on standard error; returns that line."""
     capsys.readouterr()
     assert main(arguments) == 2
     output = capsys.readouterr()
@@ -42,7 +42,7 @@ def fails(capsys: Captured, arguments: list[str]) -> str:
 
 
 def refused(capsys: Captured, arguments: list[str]) -> str:
-    """Run a command whose flags are not understood; what standard error says."""
+    """Run a command whose flags must be refused; returns its standard error."""
     capsys.readouterr()
     with pytest.raises(SystemExit) as exit_:
         main(arguments)
@@ -54,7 +54,7 @@ def refused(capsys: Captured, arguments: list[str]) -> str:
 
 
 def changed(arguments: list[str], *flags: str) -> list[str]:
-    """The arguments with other values: flags, each followed by its value, that take the place of those given before."""
+    """The arguments with these flags, each followed by its value, in place of the values given before."""
     others = list(arguments)
     for flag, value in zip(flags[::2], flags[1::2], strict=True):
         if flag in others:
@@ -65,6 +65,6 @@ def changed(arguments: list[str], *flags: str) -> list[str]:
 
 
 def stand_in(name: str, run: Callable[[list[str]], None], monkeypatch: pytest.MonkeyPatch) -> None:
-    """Make this function the command of that name, which need not be there otherwise."""
+    """Make `run` the command of that name, whether or not there is one."""
     monkeypatch.setitem(COMMANDS, name, Command(""))
     monkeypatch.setitem(sys.modules, f"mrta_zoo.cli.{name}", SimpleNamespace(**{f"{name}_command": run}))

@@ -36,6 +36,6 @@ def signals_heard() -> Iterator[None]:
 
 
 def pytest_collection_finish() -> None:
-    """Spares every full collection (statsmodels asks for one a call) the objects that the imports made."""
+    """Keep the imports' objects out of every full garbage collection (statsmodels asks for one per call)."""
     gc.collect()
     gc.freeze()

@@ -11,7 +11,7 @@ from mrta_zoo.generators import UniformGenerator
 
 GENERATOR = UniformGenerator(tasks=(3, 10), robots=(2, 5), deadline=(20, 200))
 FORMS = ["dict", "masked", "flat"]
-"""Of observations."""
+"""The forms of observations."""
 
 
 def small_scenario(
@@ -87,7 +87,7 @@ def same(a: Any, b: Any) -> bool:
 
 
 def record(env: Any, seed: int) -> list[Any]:
-    """Everything an episode shows, from where it stands to its end."""
+    """Everything that an episode shows, from its present state to the end."""
     rng = np.random.default_rng(seed)
     seen = []
     for agent in env.agent_iter():
@@ -99,13 +99,13 @@ def record(env: Any, seed: int) -> list[Any]:
 
 
 def completion_rate(env: Any) -> float:
-    """Of the mission under way."""
+    """The completion rate of the mission so far."""
     mission = env.unwrapped.mission
     return mission.completed() / mission.scenario.num_tasks
 
 
 def named_scenario() -> Scenario:
-    """Five tasks and two robots, most with names that somebody might take for markup.
+    """Five tasks and two robots, most with names that could be mistaken for markup.
 
     Ann can do valve-A from 0 to 15 (10 of way, 5 of work) and then pump #3 <b> from 15 to 45 (20 and 10). Bob & Co,
     twice as fast and strong, can do =SUM(A1) until 17 (30 / 2 and 4 / 2) or else $x$ until 21 (40 / 2 and 2 / 2),

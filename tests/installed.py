@@ -1,4 +1,4 @@
-"""Which methods can be tried here: each needs what its extra brings."""
+"""Skipping tests of methods whose extra is not installed."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from mrta_zoo.policies.registry import METHODS
 
 
 def skip_unless_installed(name: str) -> None:
-    """Skip the test if what a method needs is not installed."""
+    """Skip the test if the extra of this method is not installed."""
     extra = METHODS[name].extra
     for module in extras.EXTRAS[extra] if extra else ():
         pytest.importorskip(module)

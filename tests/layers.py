@@ -1,4 +1,4 @@
-"""The layers of the house, what each module imports, and the map of it all in docs/architecture.md.
+"""The layers of the package, the imports of each module, and the map of both in docs/architecture.md.
 
 ``python tests/layers.py`` draws the map anew.
 """
@@ -78,7 +78,7 @@ MODULES = modules()
 
 
 def imports(source: str) -> Iterator[str]:
-    """What a module of ours imports from us, at the top, inside functions, or for types only."""
+    """The modules of ours that a source imports, at the top, inside functions, or for types only."""
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
@@ -133,9 +133,9 @@ def needs() -> dict[str, set[str]]:
 
 
 def draw() -> str:
-    """The map as a Markdown table: one row per room, in layers from the top down, with what it uses."""
+    """The map as a Markdown table: one row per room, layer by layer from the top down, with the rooms it uses."""
     uses = needs()
-    lines = ["| layer | room | holds | uses directly |", "|---|---|---|---|"]
+    lines = ["| layer | module or package | holds | uses directly |", "|---|---|---|---|"]
     for index in reversed(range(len(LAYERS))):
         members = [module for module in MODULES if layer(module) == index]
         for number, each in enumerate(dict.fromkeys(room(module) for module in members)):

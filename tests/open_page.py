@@ -6,11 +6,11 @@ import re
 from typing import Any
 
 UNITS = 520
-"""Of the map's SVG, along the longer side of the map; its y axis points down."""
+"""Length of the map's longer side in the units of its SVG, whose y axis points down."""
 
 
 class OpenPage:
-    """A page, and what it complained of or asked the network for."""
+    """A page, with its console messages, errors and network requests."""
 
     def __init__(self, browser: Any, url: str, width: int = 1400, height: int = 900) -> None:
         self.complaints: list[str] = []
@@ -29,7 +29,7 @@ class OpenPage:
         return texts
 
     def slide(self, time: float) -> None:
-        """Move the slider, as a hand would, but exactly."""
+        """Move the slider to an exact time, as a hand would."""
         self.tab.locator("#slider").evaluate(
             "(slider, time) => { slider.value = time; slider.dispatchEvent(new Event('input')) }", time
         )

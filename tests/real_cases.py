@@ -1,4 +1,4 @@
-"""The published TAPTC cases, which are not the project's to ship: tests on them run where they lie beside it."""
+"""The published TAPTC cases, which the project may not ship: tests need them in a folder beside the checkout."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every error about a file must be: one sentence."""
+"""Checks that errors are one sentence."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from mrta_zoo.errors import MrtaError
 
 
 def check_sentence(error: MrtaError, *parts: str) -> None:
-    """It says all these parts, on one line, not too long, with no second traceback."""
+    """Check that it has all these parts, on one line, not too long, with no second traceback."""
     message = str(error)
     for part in parts:
         assert part in message, f"{part!r} is not in {message!r}"

@@ -1,4 +1,4 @@
-"""Running the stepper by a script."""
+"""Running the stepper with a script."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Random scenarios that look for trouble, and choosers of legal actions.
+"""Random awkward scenarios, and choosers of legal actions.
 
-One recipe serves Hypothesis, which shrinks what fails, and plain seeded loops, which are many times faster.
+One recipe serves Hypothesis, which shrinks failures, and plain seeded loops, which are many times faster.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from mrta_zoo.scenario import Scenario
 
 Chooser = Callable[[npt.NDArray[np.bool_]], int]
-"""Given a mask of tasks with at least one legal, the task to take."""
+"""Takes a mask with at least one legal task, returns the task to take."""
 
 
 class Source(Protocol):

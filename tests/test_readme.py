@@ -57,9 +57,3 @@ def test_example_files_are_read(language: str, tmp_path: Path) -> None:
     (tmp_path / f"mission.{language}").write_text(text, encoding="utf-8")
     scenario = read_scenario(tmp_path / f"mission.{language}")
     assert (scenario.num_tasks, scenario.speed.tolist()) == (2, [1, 1.5])
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_links_lead_somewhere(page: Path) -> None:
-    for target in re.findall(r"\]\((?!https?://|#)([^)]+)\)", page.read_text(encoding="utf-8")):
-        assert (page.parent / target).exists(), f"{page.name} links to {target}, which does not exist"

@@ -1,4 +1,4 @@
-"""Small files as they should be; `io` tests damage them."""
+"""Small valid files, which the tests of `io` damage."""
 
 TASKS = "2 3 100 50\n0 1 2 20 255\n1 3 4 20 100\n2 5 6 20 30\n"
 AGENTS = "2 100 50\n0 9 10 2.0\n1 7 8 1.0\n"

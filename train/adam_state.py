@@ -1,4 +1,4 @@
-"""What Adam remembers of each weight, as tensors of a file and back."""
+"""Adam's state as named tensors, for checkpoints."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.policies.neural.weights import read_tensors
 
 KEYS = ("step", "exp_avg", "exp_avg_sq")
-"""What Adam keeps of each weight: the number of its steps, and its moments."""
+"""Adam's state of one weight: the number of steps, and the first and second moments."""
 
 
 def adam_tensors(optimizer: torch.optim.Adam, network: nn.Module) -> dict[str, Tensor]:
-    """What Adam remembers, named after the network's weights: ``NAME/step``, ``NAME/exp_avg``, ``NAME/exp_avg_sq``."""
+    """Adam's state, named after the network's weights: ``NAME/step``, ``NAME/exp_avg``, ``NAME/exp_avg_sq``."""
     return {
         f"{name}/{key}": value
         for name, parameter in network.named_parameters()
@@ -24,17 +24,17 @@ def adam_tensors(optimizer: torch.optim.Adam, network: nn.Module) -> dict[str, T
 
 
 def restore_adam(optimizer: torch.optim.Adam, network: nn.Module, path: Path, updates: int, complete: bool) -> None:
-    """Let Adam remember what a file holds.
+    """Restore Adam's state from a file.
 
     Args:
-        optimizer: a fresh one of the network's weights.
+        optimizer: a fresh one, for the network's weights.
         network: the network.
         path: a safetensors file of `adam_tensors`.
-        updates: how many updates there were before it was written.
-        complete: whether it must know of every weight.
+        updates: number of updates before the file was written.
+        complete: whether the file must hold the state of every weight.
 
     Raises:
-        ConfigError: if the file is missing or damaged, or cannot be of this network after so many updates.
+        ConfigError: if the file is missing or damaged, or cannot belong to this network after that many updates.
     """
     tensors = read_tensors(path)
     for name, parameter in network.named_parameters():
@@ -52,14 +52,14 @@ def restore_adam(optimizer: torch.optim.Adam, network: nn.Module, path: Path, up
 
 
 def _check(state: dict[str, Tensor], parameter: Tensor, where: str, updates: int) -> None:
-    """Raises `ConfigError` unless this can be what Adam remembers of a parameter."""
+    """Raises `ConfigError` unless this can be Adam's state of a parameter."""
     for key, shape in zip(KEYS, ((), parameter.shape, parameter.shape), strict=True):
         if key not in state:
             raise ConfigError(f"{where}/{key} is missing; the checkpoint is damaged")
         value = state[key]
         if value.dtype != torch.float32 or value.shape != shape or not torch.isfinite(value).all():
             raise ConfigError(
-                f"{where}/{key} is no finite float32 tensor of shape {tuple(shape)}; the checkpoint is damaged"
+                f"{where}/{key} is not a finite float32 tensor of shape {tuple(shape)}; the checkpoint is damaged"
             )
     if not 1 <= float(state["step"]) <= updates or (state["exp_avg_sq"] < 0).any():
         raise ConfigError(f"{where} has impossible moments; the checkpoint is damaged")

@@ -30,7 +30,7 @@ def play(env: Any, network: Any, seed: int, sampler: torch.Generator | None) -> 
     Args:
         env: an AEC environment with Dict observations and the "completion" reward.
         network: chooses for every robot.
-        seed: of the scenario; the same seed gives the same scenario.
+        seed: draws the scenario; the same seed gives the same one.
         sampler: draws the actions; None takes the likeliest.
 
     Returns:
@@ -97,7 +97,7 @@ def main(updates: int = 100, seed: int = 0) -> None:
 
     Args:
         updates: gradient steps.
-        seed: of weights, scenarios and choices.
+        seed: seeds weights, scenarios and choices.
     """
     env = small_problem()
     network = build_network(NetworkConfig(embedding=32, heads=4), "shared", robots=2, seed=seed)

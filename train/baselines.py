@@ -1,4 +1,4 @@
-"""What a mission's outcome is compared with, so that luck of the scenario is not taken for merit."""
+"""Baselines of REINFORCE: the loss that a mission is compared with, so that an easy scenario earns no credit."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from mrta_zoo.train.objective import Objective
 
 
 class Baseline(Protocol):
-    """Estimates the loss to be expected of a scenario."""
+    """Estimates the expected loss on a scenario."""
 
     def advantage(self, scenarios: ScenarioBatch, loss: Tensor) -> Tensor:
         """How much worse (> 0) than expected each sample turned out.
 
         Args:
             scenarios: the S scenarios.
-            loss: (S, G) what each of G samples lost.
+            loss: (S, G) loss of each of G samples.
 
         Returns:
             (S, G).
@@ -35,15 +35,15 @@ class Baseline(Protocol):
         ...
 
     def end_epoch(self, network: Network, validation: ScenarioBatch, loss: Tensor) -> bool:
-        """Take note of the network's greedy (V,) loss on the validation scenarios; whether the baseline changed."""
+        """Learn the network's greedy (V,) loss on the validation scenarios; returns whether the baseline changed."""
         ...
 
     def state(self) -> dict[str, Tensor]:
-        """What a checkpoint must hold for it; empty if it remembers nothing."""
+        """The tensors that a checkpoint must hold; empty if the baseline has no state."""
         ...
 
     def restore(self, state: dict[str, Tensor], path: Path) -> None:
-        """Put back what `state` gave.
+        """Restore what `state` returned.
 
         Raises:
             ConfigError: if it does not fit; the message names the file, `path`.
@@ -52,7 +52,7 @@ class Baseline(Protocol):
 
 
 class Memoryless:
-    """What baselines without a memory have in common."""
+    """Base of the baselines without state."""
 
     def state(self) -> dict[str, Tensor]:
         return {}
@@ -75,8 +75,8 @@ class SamplesBaseline(Memoryless):
 class ExponentialBaseline:
     """A moving average of the losses, the same for all scenarios (the simplest one in Kool et al. 2019).
 
-    The first batch's mean to begin with; then, with each batch, decay · average + (1 − decay) · mean of the batch, with
-    which that batch is compared.
+    It starts as the mean of the first batch. Each later batch makes it decay · average + (1 − decay) · mean of the
+    batch, and is compared with this new average.
 
     Args:
         decay: in 0..1; 0 compares with the batch's own mean.

@@ -3,10 +3,10 @@
 A run's folder holds::
 
     config.json                        the TrainConfig
-    checkpoints/00000050/              one folder a checkpoint, named after the update; it appears all at once
+    checkpoints/00000050/              one folder per checkpoint, named after the update; it appears all at once
         network.safetensors            the weights
         optimizer.safetensors          Adam's moments
-        baseline.safetensors           what the baseline remembers: weights (rollout), the average (exponential)
+        baseline.safetensors           the baseline's state: weights (rollout), the average (exponential)
         state.json                     update, time spent, validation history
     plans/*.npz                        the plans to imitate, if any
     policy.safetensors, policy.json    the policy with the best validation so far
@@ -41,7 +41,7 @@ class RunState:
 
     update: int
     seconds: float
-    """Time spent training, before and after it was resumed."""
+    """Time spent training, over all sessions."""
     history: list[Validation]
 
 
@@ -49,8 +49,8 @@ def start(folder: Path, config: TrainConfig, options: RunOptions | None = None) 
     """Begin a run in a new or empty folder.
 
     Raises:
-        ConfigError: if the folder already holds a run, another process is using it, it can't be written, or it has a
-            name that no policy can have.
+        ConfigError: if the folder already holds a run, another process is using it, it can't be written, or its
+            name cannot be a policy's.
     """
     check_no_url(folder, ConfigError)
     _check_new(folder)
@@ -90,7 +90,7 @@ def resume(folder: Path, options: RunOptions | None = None) -> tuple[Reinforce, 
     at = folder / "checkpoints" / _name(numbers[-1])
     state = read_json(at / "state.json", RunState)
     load_state(run.network, read_tensors(at / "network.safetensors"), at / "network.safetensors")
-    # Adam knows nothing of what has had no gradient: before the first update, or of robots that never decided.
+    # Weights without a gradient so far have no state: all before the first update, those of robots that never decided.
     complete = state.update > 0 and config.sharing == "shared"
     restore_adam(run.optimizer, run.network, at / "optimizer.safetensors", state.update, complete)
     # Before its first update of REINFORCE a baseline may have nothing to remember yet.
@@ -130,10 +130,10 @@ def seconds_spent(folder: Path) -> float:
 
 
 def save(folder: Path, run: Reinforce, seconds: float) -> None:
-    """Write a checkpoint of the run, which was just validated, drop old ones, and keep the best policy.
+    """Write a checkpoint of a run just validated, drop old checkpoints, and keep the best policy.
 
     Raises:
-        ConfigError: if it cannot be written; the last checkpoint is then as before.
+        ConfigError: if it cannot be written; the last checkpoint is then untouched.
     """
     try:
         _save(folder, run, seconds)
@@ -151,7 +151,7 @@ def _save(folder: Path, run: Reinforce, seconds: float) -> None:
     if baseline := run.baseline.state():
         write_tensors(partial / "baseline.safetensors", baseline)
     write_json(partial / "state.json", RunState(run.update, round(seconds, 1), run.history))
-    if not os.path.lexists(folder / "config.json"):  # the folder has gone, and is a new one
+    if not os.path.lexists(folder / "config.json"):  # the folder was deleted meanwhile, and is a new one
         write_json(folder / "config.json", run.config)
     # Before the checkpoint counts: a run killed in between validates again and writes the same policy.
     if run.history[-1] is run.best or not os.path.lexists(folder / "policy.safetensors"):
@@ -164,7 +164,7 @@ def _save(folder: Path, run: Reinforce, seconds: float) -> None:
 
 
 def policy_info(run: Reinforce, seconds: float) -> PolicyInfo:
-    """What is saved beside a run's policy.
+    """The description that is saved beside a run's policy.
 
     Raises:
         ConfigError: if the run has not validated yet.

@@ -1,4 +1,4 @@
-"""Processes that work for another one, and end with it."""
+"""Worker processes that end with their parent."""
 
 from __future__ import annotations
 
@@ -15,21 +15,19 @@ from typing import Any
 
 from mrta_zoo.errors import ConfigError
 
-DIED = (
-    "a process that was at work was killed, for want of memory perhaps; try again, with fewer --workers if it had many"
-)
+DIED = "a worker process was killed, perhaps for lack of memory; try again, with fewer --workers if there were many"
 
 
 @contextmanager
 def pool_of(
     workers: int, prepare: Callable[..., None] | None = None, arguments: tuple[Any, ...] = ()
 ) -> Iterator[ProcessPoolExecutor]:
-    """A pool whose processes end at once where the block is left by an exception, be it Ctrl-C.
+    """A pool whose processes end at once if an exception leaves the block, Ctrl-C included.
 
     Args:
         workers: number of processes.
         prepare: called in each before its first job.
-        arguments: what it is called with.
+        arguments: those of `prepare`.
 
     Raises:
         ConfigError: if one of the processes dies.

@@ -20,7 +20,7 @@ NAMES: dict[str, Any] = {
     "baseline": BaselineName, "objective": ObjectiveName, "generator": GeneratorName, "sharing": Sharing,
     "mask_rule": MaskRule, "precision": Precision,
 }  # fmt: skip
-"""Settings that are one of a few names."""
+"""Settings that take one of a few names."""
 LEAST = {
     1: (
         "reference_tasks", "min_robots", "scenarios", "samples", "updates", "epoch", "keep_checkpoints",
@@ -28,7 +28,7 @@ LEAST = {
     ),
     0: ("imitation_plans", "imitation_updates", "imitation_decisions"),
 }  # fmt: skip
-"""Settings that are whole numbers, by the least that they may be."""
+"""Settings that are whole numbers, by their smallest legal value."""
 MOST_DECISIONS = 10_000
 """Far more than a plan has."""
 
@@ -41,34 +41,34 @@ class TrainConfig:
         network: architecture of the policy network.
         sharing: one network for all robots ("shared"), one for each ("independent"), or one for each kind of robots
             ("by-capacity").
-        kinds: of robots, if by capacity: capacities as shares of the strongest robot's in a team, ascending, the last
-            one 1.
+        kinds: the kinds of robots, if by capacity: capacities as shares of the strongest robot's in a team, ascending,
+            the last one 1.
         generator: distribution of the training scenarios: "taptc" (fitted to the benchmark), "uniform" (paper
             §IV-A), or "mixture" (both, see `mrta_zoo.train.distribution`).
         tasks: numbers of tasks; each update draws one of them.
         task_weights: how often each of `tasks` is drawn, relative to the others; empty for equally often.
-        reference_tasks: the number of tasks that the number of robots is given for; with other numbers of tasks it
-            grows in proportion.
+        reference_tasks: the number of tasks that `min_robots` and `max_robots` are meant for; with other numbers of
+            tasks they scale in proportion.
         min_robots: fewest robots of a scenario.
         max_robots: most robots of a scenario.
         mask_rule: what a robot may choose.
         imitation_updates: gradient steps that imitate plans of a strong search (`mrta_zoo.train.imitation.experts`)
             before REINFORCE takes over; 0 for none.
         imitation_plans: number of plans to imitate; they are made and kept in files of 500.
-        imitation_batch: plans a step.
-        imitation_decisions: decisions of each of them, at most 10,000, drawn at random from a pool of up to 8,192 plans
-            that is replaced from time to time (`mrta_zoo.train.imitation.imitator`), which is quicker on a GPU; 0
-            takes all decisions, without a pool.
+        imitation_batch: plans per step.
+        imitation_decisions: decisions per plan, at most 10,000, drawn at random from a pool of up to 8,192 plans that
+            is replaced from time to time (`mrta_zoo.train.imitation.imitator`), which is faster on a GPU; 0 takes all
+            decisions, without a pool.
         imitation_learning_rate: Adam's step size at the start of the imitation; falls to a tenth along a cosine.
         objective: what to minimise: "cost" (Eq. 1 of the paper, divided by the number of tasks), one minus the
-            completion rate ("completion"), or −ln(1 + number of completed tasks) ("relative"), for which missions
-            with few robots, of which no plan completes much, count as much as others.
+            completion rate ("completion"), or −ln(1 + number of completed tasks) ("relative"), which gives
+            missions with few robots, where no plan completes much, the same weight as others.
         baseline: what a mission's loss is compared with: the mean of the other samples of its scenario
             ("samples"), the greedy rollout of the best policy so far, replaced when a paired t-test says that
-            the present one is better ("rollout", the paper's), or a moving average over updates ("exponential").
-        baseline_decay: how much of the "exponential" baseline an update leaves as it was.
+            the current one is better ("rollout", the paper's), or a moving average over updates ("exponential").
+        baseline_decay: the share of the "exponential" baseline that an update keeps.
         scenarios: scenarios per update.
-        samples: missions sampled of each scenario; at least 2 for the "samples" baseline.
+        samples: missions sampled per scenario; at least 2 for the "samples" baseline.
         updates: number of gradient steps of REINFORCE.
         learning_rate: Adam's step size at the start.
         final_learning_rate: Adam's step size at the end, reached along a cosine.
@@ -79,15 +79,15 @@ class TrainConfig:
         temperature: REINFORCE samples from the probabilities p^(1/temperature), normalised, and improves these; from
             1e-6 to 1e6. Below 1, REINFORCE starts close to the policy's favourites after imitation instead of sampling
             from everything that imitation left open.
-        epoch: updates between two validations, each with a checkpoint, and with the baseline's t-test.
+        epoch: updates from one validation to the next; each comes with a checkpoint and the baseline's t-test.
         validation_scenarios: number of validation scenarios, drawn once from the training distribution.
         significance: level of the baseline's t-test.
         initial: start from the weights of this policy (a shipped name, a .safetensors file, or a run's folder) instead
             of random ones; its architecture must be the same, `candidates` and `peers` aside. Empty for random weights.
-        seed: of everything random.
+        seed: seeds everything random.
         keep_checkpoints: how many of the latest checkpoints to keep.
         device: "cpu", "cuda", or "auto" (a GPU if there is one).
-        precision: of matrix products, "float32" or "bfloat16" (faster on a GPU).
+        precision: the precision of matrix products, "float32" or "bfloat16" (faster on a GPU).
     """
 
     network: NetworkConfig = field(default_factory=NetworkConfig)

@@ -18,18 +18,18 @@ def draw_size(config: TrainConfig, rng: np.random.Generator) -> int:
 
 
 def team(config: TrainConfig, tasks: int) -> tuple[int, int]:
-    """Fewest and most robots for so many tasks: in proportion to what the configuration says for its reference size."""
+    """Fewest and most robots for this many tasks, in proportion to those for the configuration's reference size."""
     scale = tasks / config.reference_tasks
     return max(1, round(config.min_robots * scale)), max(1, round(config.max_robots * scale))
 
 
 def most_robots(config: TrainConfig) -> int:
-    """The most robots that any scenario of the run has, but at least `config.max_robots`: generators may be given."""
+    """The most robots of any scenario of the run, and at least `config.max_robots`, for generators of your own."""
     return max(config.max_robots, *(team(config, tasks)[1] for tasks in config.tasks))
 
 
 def training_generator(config: TrainConfig, tasks: int) -> ScenarioGenerator:
-    """The generator of training and validation scenarios with so many tasks.
+    """The generator of training and validation scenarios with this many tasks.
 
     "taptc" is fitted to the benchmark, "uniform" is the paper's §IV-A, "mixture" is 2/5 each of these two, and 1/5
     TAPTC-like with robots of capacity 1 or 2 at random and deadlines from a wider range.
@@ -46,10 +46,10 @@ def training_generator(config: TrainConfig, tasks: int) -> ScenarioGenerator:
 
 
 def check_distribution(config: TrainConfig) -> None:
-    """Make sure that scenarios of every size can be drawn, for robots that there are networks for.
+    """Check that scenarios of every size can be drawn, and that all their robots have a network.
 
     Raises:
-        ConfigError: if a size is out of range, or there is to be a network for each kind of robots and any is drawn.
+        ConfigError: if a size is out of range, or sharing is by capacity and the generator draws any capacity.
     """
     for tasks in config.tasks:
         training_generator(config, tasks)

@@ -1,4 +1,4 @@
-"""A run's log for TensorBoard. A run goes on without it if it cannot be written."""
+"""A run's TensorBoard log. If it cannot be written, the run goes on without it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class EventLog:
 
     Args:
         folder: of the log; made if it does not exist.
-        purge_step: TensorBoard no longer shows what earlier files of the folder hold from this step on.
+        purge_step: from this step on, TensorBoard no longer shows what earlier files of the folder hold.
         tell: called with a sentence that says why the log ends.
     """
 

@@ -1,4 +1,4 @@
-"""Gradients of the log-probabilities of decisions already taken, weighted by how their missions turned out."""
+"""Policy gradients: of the log-probabilities of decisions already taken, weighted by their missions' outcomes."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ def accumulate_gradients(
     entropy: float = 0.0,
     precision: Precision = "float32",
 ) -> float:
-    """Add to the parameters' gradients that of the mean over missions of advantage · Σ log-probability.
+    """Accumulate the gradient of the mean over missions of advantage · Σ log-probability.
 
-    The encoder runs once; the decoder goes back through one segment after another, so that memory holds one of them.
+    The encoder runs once; the decoder's backward pass takes one segment at a time, so that memory holds only one.
 
     Args:
         network: the policy.
@@ -35,7 +35,7 @@ def accumulate_gradients(
         precision: of matrix products.
 
     Returns:
-        The mean whose gradient it is.
+        That mean.
     """
     with autocast(scenarios.device, precision):
         encoding = network.encode(Tasks.of_batch(scenarios))
@@ -56,7 +56,7 @@ def accumulate_gradients(
         loss = loss / advantage.numel()
         loss.backward()
         total += loss.detach()
-    # None where nothing was decided by it: by the networks of robots that no scenario has, or by any.
+    # None where a network took no decision, as for robots that no scenario has; or if none took any.
     used = [(of, cut_off.grad) for of, cut_off in leaves if cut_off.grad is not None]
     torch.autograd.backward([of for of, _ in used], [gradient for _, gradient in used])
     return float(total)
@@ -66,7 +66,7 @@ def _surrogate(log_probs: Tensor, segment: Segment, advantage: Tensor, entropy: 
     """The sum over a segment's decisions of advantage · log-probability, less the entropy bonus."""
     chosen = log_probs.gather(2, segment.actions[..., None]).squeeze(2)
     weight = advantage[segment.scenarios][:, segment.sample]
-    # Where a plan takes a task that is no candidate there is nothing to learn.
+    # A plan may take a task that is not a candidate: there is nothing to learn from that.
     live = segment.live & torch.isfinite(chosen)
     loss: Tensor = (weight * chosen.masked_fill(~live, 0.0)).sum()
     if entropy:

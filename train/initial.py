@@ -1,4 +1,4 @@
-"""The weights that a run starts from, where they are another policy's."""
+"""Initial weights that come from another policy."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def load_initial(network: Network, config: TrainConfig) -> None:
     """Put the weights of the policy `config.initial` into the run's network.
 
     Raises:
-        ConfigError: if there is no such policy, or it is of another architecture or shared otherwise.
+        ConfigError: if there is no such policy, or its architecture or sharing differs.
     """
     initial, policy = config.initial, load_policy(config.initial)
     info = policy.info

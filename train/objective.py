@@ -1,4 +1,4 @@
-"""What training minimises, computed from the simulator's own records."""
+"""Objectives, which training minimises, computed from the simulator's own records."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def missed_share(rollout: Rollout, scenarios: ScenarioBatch) -> Tensor:
 
 
 def relative(rollout: Rollout, scenarios: ScenarioBatch) -> Tensor:
-    """−ln(1 + number of completed tasks): a task more counts as a share of what there is.
+    """−ln(1 + number of completed tasks): one more task counts in proportion to those completed.
 
-    So missions in which few tasks can be done, which otherwise hardly differ, are learned from as much as others.
+    So missions in which few tasks can be done, whose losses would otherwise hardly differ, teach as much as others.
     """
     del scenarios
     return -(1.0 + rollout.completed.double()).log()
@@ -38,7 +38,7 @@ OBJECTIVES: dict[str, Objective] = {"cost": cost_per_task, "completion": missed_
 
 
 def checked(objective: Objective) -> Objective:
-    """A user's objective, which raises `ConfigError` if it gives anything but (B,) floating-point losses."""
+    """A user's objective, made to raise `ConfigError` if it returns anything but (B,) floating-point losses."""
 
     def losses(rollout: Rollout, scenarios: ScenarioBatch) -> Tensor:
         given, missions = objective(rollout, scenarios), len(rollout.cost)

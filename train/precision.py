@@ -1,4 +1,4 @@
-"""The precision of matrix products, and other choices that a GPU leaves."""
+"""Numerical choices on a GPU: the precision of matrix products, and the kernel of attention."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ Precision = Literal["float32", "bfloat16"]
 
 
 def autocast(device: torch.device, precision: Precision) -> torch.autocast:
-    """A context in which matrix products on a GPU have that precision; scores and sums stay float32, as does a CPU.
+    """A context in which matrix products on a GPU have this precision; scores, sums and CPUs stay with float32.
 
     Args:
-        device: where the products are.
-        precision: theirs.
+        device: where the products are computed.
+        precision: of the products.
     """
     enabled = precision == "bfloat16" and device.type == "cuda"
     return torch.autocast(device.type, dtype=torch.bfloat16, enabled=enabled)
 
 
 def quick_attention(device: torch.device) -> AbstractContextManager[None]:
-    """A context in which attention among a few tokens, without gradients, is quick on a GPU.
+    """A context in which attention among a few tokens, without gradients, is fast on a GPU.
 
-    cuDNN's, which PyTorch would choose, took four times as long (H200).
+    PyTorch would choose cuDNN's kernel, which took four times as long (H200).
     """
     if device.type == "cuda":
         return sdpa_kernel([SDPBackend.EFFICIENT_ATTENTION, SDPBackend.MATH])

@@ -7,7 +7,7 @@ from dataclasses import replace
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.train.config import TrainConfig
 
-# The paper's architecture, from nothing: 33 minutes on one thread of a busy machine.
+# The paper's architecture, from scratch: 33 minutes on one thread of a busy machine.
 FAST = TrainConfig(
     generator="mixture",
     scenarios=12,

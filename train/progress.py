@@ -1,4 +1,4 @@
-"""A training run from here to its end: progress bar, TensorBoard and checkpoints."""
+"""Training to the end, with a progress bar, TensorBoard and checkpoints."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from mrta_zoo.train.reinforce import Reinforce, Update
 from mrta_zoo.wording import counted
 
 CURVES = ("train/loss", "train/gradient_norm", "train/learning_rate", "train/episodes_per_second")
-"""What TensorBoard shows of updates."""
+"""The curves of updates in TensorBoard."""
 
 
 def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console | None = None) -> None:
@@ -37,7 +37,7 @@ def train(run: Reinforce, folder: Path, seconds: float = 0.0, console: Console |
     first = run.update
     per_update = config.scenarios * config.samples
     with (
-        # What an earlier session has shown beyond its last checkpoint comes again.
+        # Updates that an earlier session logged after its last checkpoint come again.
         EventLog(folder / "tensorboard", first + 1 if run.history else 0, lambda why: say(console, why)) as board,
         Progress(*fitting(_columns(), console), console=console, disable=not console.is_terminal) as progress,
     ):
@@ -82,7 +82,7 @@ def _columns() -> tuple[ProgressColumn, ...]:
 
 
 def _what_it_does(run: Reinforce) -> str:
-    """What is ahead of a run, in a line."""
+    """What a run is about to do, in one line."""
     config, total, imitated = run.config, run.config.total_updates, ""
     parameters = sum(parameter.numel() for parameter in run.network.parameters())
     if config.imitation_updates:

@@ -1,8 +1,8 @@
 """REINFORCE with parameters shared among the robots (paper §III-C).
 
 An update samples missions without gradients, compares their outcomes with a baseline, and then recomputes the
-log-probabilities of all their decisions at once, with gradients: the encoder runs once a scenario, and the decoder
-in a few large batches.
+log-probabilities of all their decisions at once, with gradients: the encoder runs once per scenario, and the
+decoder in a few large batches.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Validation:
     """Missions sampled for training so far."""
     completion: float
     cost: float
-    """Eq. 1 of the paper, a task."""
+    """Eq. 1 of the paper, per task."""
     baseline_replaced: bool
 
 
@@ -72,12 +72,12 @@ class RunOptions:
 
 
 class Reinforce:
-    """A training run in memory. `step` and `validate` move it on; `train.checkpoint` saves and restores it.
+    """A training run in memory. `step` and `validate` advance it; `train.checkpoint` saves and restores it.
 
-    On a CPU they use one thread; ``with cpu_threads(4):`` (`policies.cpu_threads`) around them says otherwise.
+    On a CPU they use one thread, or 4 within ``with cpu_threads(4):`` (`policies.cpu_threads`).
 
-    All randomness derives from (seed, number of the update): a run that is resumed goes on exactly as if it had
-    never stopped, with no generator state to be saved.
+    All randomness derives from (seed, number of the update): a resumed run goes on exactly as if it had never
+    stopped, and no generator state needs saving.
     """
 
     def __init__(
@@ -87,17 +87,17 @@ class Reinforce:
         options: RunOptions | None = None,
         objective: Objective | None = None,
     ) -> None:
-        """Start afresh.
+        """Begin a run.
 
         Args:
-            config: the run.
+            config: its configuration.
             generator: draws the scenarios; by default, as `config.generator` says.
             options: how fast it runs.
             objective: what to minimise, see `mrta_zoo.train.objective`; by default, as `config.objective` says.
 
         Raises:
-            ConfigError: if `config.initial` names no policy, or one of another architecture; or if there is to be a
-                network for each kind of robots, and the configuration's generator draws any kind.
+            ConfigError: if `config.initial` names no policy, or one of another architecture; or if sharing is by
+                capacity and the configuration's generator draws any capacity.
         """
         options = options or RunOptions()
         self.config = config
@@ -135,12 +135,12 @@ class Reinforce:
 
     @property
     def imitates(self) -> bool:
-        """Whether there are steps of imitation still to come."""
+        """Whether steps of imitation are still to come."""
         return self.update < self.config.imitation_updates
 
     @property
     def best(self) -> Validation:
-        """The best validation so far: by completion, then cost, then the earliest. There must have been one."""
+        """The best validation so far: by completion, then cost, then the earliest. Needs at least one."""
         return max(self.history, key=lambda each: (each.completion, -each.cost))
 
     @few_threads()
@@ -148,7 +148,7 @@ class Reinforce:
         """One gradient step.
 
         Raises:
-            ConfigError: if training has diverged, and the weights are then as before; or if there are no plans to
+            ConfigError: if training has diverged (the weights are then unchanged), or if there are no plans to
                 imitate.
         """
         if self.update == self.config.imitation_updates:
@@ -170,7 +170,7 @@ class Reinforce:
         return Update(self.update, loss, float(norm), rate, decisions)
 
     def _reinforce(self) -> tuple[float, int]:
-        """Gradients of REINFORCE; the mean loss, and the number of decisions."""
+        """Accumulate the gradients of REINFORCE; returns the mean loss and the number of decisions."""
         config, policy = self.config, tempered(self.network, self.config.temperature)
         drawn = self._drawn()
         scenarios = drawn.scenarios.to(self.device)
@@ -193,7 +193,7 @@ class Reinforce:
 
     @few_threads()
     def validate(self) -> Validation:
-        """Evaluate greedily, let the baseline change, and add to the history."""
+        """Evaluate greedily, let the baseline change, and append to the history."""
         scenarios = self.validation_batch
         with autocast(self.device, self.config.precision), quick_attention(self.device):
             rollout = roll_out(self.network, scenarios, mask_rule=self.config.mask_rule)
@@ -221,15 +221,15 @@ class Reinforce:
                 yield self.validate()
 
     def set_plans(self, plans: Sequence[ExpertPlan]) -> None:
-        """Give the plans to imitate, which must be there before the first step if there is to be imitation.
+        """Set the plans to imitate; a run that imitates needs them before its first step.
 
         Raises:
-            ConfigError: if there are none of some size.
+            ConfigError: if there are no plans for one of the sizes.
         """
         self._imitator.set_plans(plans)
 
     def _drawn(self) -> Drawn:
-        """The input of this update; after a resume or a failed update it is not the next one drawn."""
+        """The input of this update. After a resume or a failed update, drawing starts again from here."""
         drawn = next(self._draws, None)
         if drawn is None or drawn.update != self.update:
             self._draws = draws(self.config, self.generator, self.update, self._workers)

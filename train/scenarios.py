@@ -1,4 +1,4 @@
-"""The scenarios of a run: those of each update, which other processes may draw ahead of time, and for validation."""
+"""The scenarios of a run: for each update, perhaps drawn ahead by other processes, and for validation."""
 
 from __future__ import annotations
 
@@ -62,8 +62,8 @@ def draws(
     Args:
         config: the run.
         generator: draws the scenarios; None for the configuration's.
-        first: number of an update.
-        workers: processes that draw ahead; they end when this generator is closed. 0 draws here, one at a time.
+        first: number of the first update.
+        workers: processes that draw ahead; they end when this generator is closed. 0 draws in this process.
 
     Raises:
         ConfigError: if one of the processes dies.

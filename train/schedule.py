@@ -1,4 +1,4 @@
-"""How the step size and the entropy bonus change from update to update, in imitation and then in REINFORCE."""
+"""Schedules of the step size and the entropy bonus, through imitation and then REINFORCE."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 from mrta_zoo.train.config import TrainConfig
 
 WARM_UP = 20
-"""Gradient steps over which the step size grows to what it should be."""
+"""Gradient steps over which the step size grows to its full value."""
 
 
 def learning_rate(config: TrainConfig, update: int) -> float:
@@ -15,7 +15,7 @@ def learning_rate(config: TrainConfig, update: int) -> float:
 
     Args:
         config: the run.
-        update: number of updates done before.
+        update: number of updates done so far.
     """
     if update < config.imitation_updates:
         first, last, done = config.imitation_learning_rate, config.imitation_learning_rate / 10, update

@@ -1,4 +1,4 @@
-"""The streams of random numbers of a run: none depends on how much was drawn from another."""
+"""A run's streams of random numbers: none depends on how much was drawn from the others."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Trained networks: the policy, how it decodes, who shares it, and its files."""
+"""Neural policies: the policy, decoding, rollouts, sharing, and weights on disk."""

@@ -1,4 +1,4 @@
-"""A policy network with a value beside it, on batches of observations: what the PPO of other libraries trains."""
+"""An actor-critic on batches of observations, for the PPO of other libraries to train."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from mrta_zoo.policies.neural.sharing import Network
 
 
 class ActorCritic(nn.Module):
-    """Masked logits by a policy network, CapAM or any other that this package builds, and a value of its own.
+    """Masked logits from a policy network, CapAM or any other that this package builds, and a separate value.
 
     Observations are the environment's Dict form as tensors, ``{"observation": {"tasks", "robots", "ego", "mission"},
     "action_mask"}``, all with the same leading dimensions (…): none, a batch, or time × robots, for example. In the
-    parallel form the mask, and so the logits, have a column more, the no-op.
+    parallel form the mask, and so the logits, have one more column, the no-op.
 
-    On a CPU it uses one thread, as trained policies do. Gradients are computed by the loop that asks for them: put
+    On a CPU it uses one thread, as trained policies do. Your training loop computes the gradients: put
     ``with few_threads():`` (`policies.cpu_threads`) around it.
 
-    Nothing of the value enters `network`, which is what `weights.save_policy` writes and `neural.load_policy` loads.
+    The value is no part of `network`, which is what `weights.save_policy` writes and `policy.load_policy` loads.
 
     Args:
         network: scores the tasks, from `sharing.build_network` or `weights.load_weights`.
-        width: of the value's hidden layers.
+        width: width of the value's hidden layers.
     """
 
     def __init__(self, network: Network, width: int = 64) -> None:
@@ -38,12 +38,12 @@ class ActorCritic(nn.Module):
         self.critic = Critic(width)
 
     def forward(self, observation: Mapping[str, Any]) -> tuple[Tensor, Tensor]:
-        """Logits and values, as `logits` and `value`."""
+        """Logits and values, as from `logits` and `value`."""
         return self.logits(observation), self.value(observation)
 
     @few_threads()
     def logits(self, observation: Mapping[str, Any]) -> Tensor:
-        """(…, max_tasks) log-probabilities; the least finite number where the mask forbids, so that no NaN arises.
+        """(…, max_tasks) log-probabilities; the lowest finite number where the mask forbids, so that no NaN arises.
 
         Where nothing may be chosen at all they are all equal.
         """
@@ -54,19 +54,19 @@ class ActorCritic(nn.Module):
         flat = {name: table.reshape(-1, *table.shape[len(leading) :]) for name, table in tables.items()}
         states = DecisionStates.of_tables(flat, mask.reshape(-1, rows))
         scores: Tensor = self.network(self.network.encode(Tasks.of_tables(flat)), states).reshape(*leading, rows)
-        if noop.shape[-1]:  # where it is allowed, it is all that is
+        if noop.shape[-1]:  # where the no-op is allowed, nothing else is
             scores = torch.cat((scores.masked_fill(noop, -torch.inf), torch.where(noop, 0.0, -torch.inf)), -1)
         return scores.clamp(min=torch.finfo(scores.dtype).min)
 
     @few_threads()
     def value(self, observation: Mapping[str, Any]) -> Tensor:
-        """(…) what is expected of the rest of the mission."""
+        """(…) expected return of the rest of the mission."""
         value: Tensor = self.critic(observation["observation"])
         return value
 
 
 class Critic(nn.Module):
-    """The value of what a robot sees, whatever the order and number of tasks and peers: sums over sets.
+    """The value of an observation, for any order and number of tasks and peers: means over sets.
 
     Zaheer et al. 2017, Deep Sets.
     """

@@ -27,7 +27,7 @@ def beam_search(
     """Missions as they are finished, in batches.
 
     All unfinished missions take one decision per step. Of all continuations the `width` likeliest are kept, by the
-    probability of all their decisions together; the first among equals. A finished mission is given out and makes room:
+    probability of all their decisions together; the first among equals. A finished mission is yielded and makes room:
     left in the beam it would crowd out longer ones, since each decision makes a mission less likely.
 
     No two missions of a beam are ever the same: what was decided follows from the routes, as robots act in the order
@@ -38,7 +38,7 @@ def beam_search(
         scenario: one scenario.
         width: how many missions are unfinished at a time, >= 1; with 1 the only mission is the greedy one.
         mask_rule: what robots may choose.
-        limit: when to stop, whatever is unfinished then; None never does.
+        limit: when to stop, even with unfinished missions; None never stops.
 
     Raises:
         ConfigError: if the network gives probabilities that are not finite.

@@ -33,7 +33,7 @@ class Decoding:
         limit: when to stop searching; None makes one pass.
         must_plan: whether to finish the greedy mission even if that takes longer; otherwise there may be no plan.
         mask_rule: what robots may choose.
-        seed: of the draws.
+        seed: seeds the draws.
     """
 
     decode: Decode = "greedy"

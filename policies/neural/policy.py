@@ -51,14 +51,14 @@ class Preferences:
 
 
 class NeuralPolicy:
-    """Decides for every robot, with one network or several (`policies.sharing`). Implements `Policy` and `Solver`.
+    """Decides for every robot, with one network or several (`neural.sharing`). Implements `Policy` and `Solver`.
 
     Args:
         network: scores the tasks.
-        info: what belongs to the network.
+        info: description of the network.
         name: method name stored in plans.
         decode: how `act` chooses: drawn from the probabilities ("sample"), or the likeliest task (anything else).
-        seed: of the draws.
+        seed: seeds the draws.
     """
 
     def __init__(
@@ -102,11 +102,11 @@ class NeuralPolicy:
 
     @property
     def memoryless(self) -> bool:
-        """Whether what it does depends on the observation alone, and not on what it was asked before."""
+        """Whether its choices depend on the observation alone, and not on earlier calls."""
         return self.decode != "sample"
 
     def fork(self) -> NeuralPolicy:
-        """A policy that goes on as this one would, with draws of its own, on the same network."""
+        """A copy that goes on as this policy would, with random draws of its own, on the same network."""
         twin = copy.copy(self)
         twin._of_agent = {}
         twin._generator = torch.Generator()
@@ -140,7 +140,7 @@ class NeuralPolicy:
         unchanging = (
             seen["tasks"][:, UNCHANGING_TASK].tobytes(),
             seen["mission"][UNCHANGING_MISSION].tobytes(),
-            sum(parameter._version for parameter in self.network.parameters()),  # so that it may be in training
+            sum(parameter._version for parameter in self.network.parameters()),  # the network may be in training
         )
         if unchanging != self._encoded_for:
             self._encoding = self.network.encode(Tasks.of_observations([observation]))
@@ -176,7 +176,7 @@ class NeuralPolicy:
                 missions with the map seen in each symmetry, "beam" starts again with twice the width. The first
                 greedy mission is finished even if it takes longer.
             mask_rule: what robots may choose; by default what the policy was trained under.
-            seed: of the draws.
+            seed: seeds the draws.
 
         Raises:
             ConfigError: if an option is out of range.
@@ -230,7 +230,7 @@ def load_policy(name_or_path: str | Path, decode: Decode = "greedy", seed: int =
     Args:
         name_or_path: such as "capam", "runs/mine" or "runs/mine/policy.safetensors".
         decode: how `NeuralPolicy.act` chooses.
-        seed: of its draws.
+        seed: seeds its draws.
 
     Raises:
         ConfigError: if there is no such policy, or its files are damaged.

@@ -1,4 +1,4 @@
-"""Where the two files of a trained policy are: its weights, and the JSON beside them that says what they belong to."""
+"""Paths of the two files of a trained policy: the weights, and the JSON beside them that describes them."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from pathlib import Path
 from mrta_zoo.io.paths import as_spelt, suffix_of
 
 SUFFIX = ".safetensors"
-"""Of weights, in small or capital letters."""
+"""The suffix of weights, in small or capital letters."""
 
 
 def weights_file(place: Path) -> Path:
-    """The weights of a policy.
+    """The file of a policy's weights.
 
     Args:
         place: the file itself, or the folder of a training run.
@@ -21,5 +21,5 @@ def weights_file(place: Path) -> Path:
 
 
 def info_file(weights: Path) -> Path:
-    """The JSON that belongs to weights, which need not be there."""
+    """The JSON file that belongs to weights; it need not exist."""
     return as_spelt(weights.with_suffix(".json"))

@@ -1,4 +1,4 @@
-"""Running a network through missions in the batched simulator, greedily or by sampling."""
+"""Rollouts: a network runs missions in the batched simulator, greedily or by sampling."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario_batch import ScenarioBatch
 
 SEGMENT = 12
-"""Decisions between two checks of which missions are over; those are dropped, which saves their work."""
+"""Decisions between two checks for finished missions, which are then dropped to save work."""
 
 NOT_FINITE = (
     "the network gives probabilities that are not finite: its weights are spoilt (did training diverge?), a feature or "
@@ -29,13 +29,13 @@ NOT_FINITE = (
 
 
 class Scorer(Protocol):
-    """What decides: a `sharing.Network`, or anything else that scores tasks like one."""
+    """Scores the tasks at each decision: a `sharing.Network`, or anything else with its methods."""
 
     def encode(self, tasks: Tasks) -> Any:
-        """What it knows of S missions' tasks: a tree of tensors (`tensor_tree`) whose first dimension is S."""
+        """The encoding of S missions' tasks: a tree of tensors (`tensor_tree`) whose first dimension is S."""
 
     def features(self, encoding: Any, states: DecisionStates) -> Any:
-        """What scoring needs besides these states, or None."""
+        """What scoring these states needs besides, or None."""
 
     def __call__(self, encoding: Any, states: DecisionStates, features: Any = None) -> Any:
         """(S, G, N) log-probabilities of choosing each task, as `AllocationNetwork.forward` gives them."""
@@ -47,7 +47,7 @@ class Segment:
 
     Attributes:
         scenarios: (S',) int64 which scenarios they belong to.
-        states: what they were taken in, (S', Q, …).
+        states: the states that they were taken in, (S', Q, …).
         features: what the network computed from those states, or None.
         actions: (S', Q) int64 the tasks chosen.
         live: (S', Q) bool, false where the mission was already over.
@@ -112,20 +112,20 @@ def roll_out(
     """Let `network` decide for all robots of all missions.
 
     Args:
-        network: decides for each robot; its encoder runs once a scenario.
+        network: decides for each robot; its encoder runs once per scenario.
         scenarios: S scenarios.
         samples: G, how many missions to run of each.
         generator: draws the decisions from the network's probabilities; None takes the likeliest (greedy).
         mask_rule: what robots may choose.
         keep_plans: whether to return the plans.
         keep_segments: whether to return every decision, for learning.
-        limit: when to give up; None never does.
+        limit: when to give up; None never gives up.
 
     Raises:
         ConfigError: if the network gives probabilities that are not finite.
         OutOfTimeError: if the time is up before all missions are over.
     """
-    # Inference mode is quicker, but what it makes can't take part in learning.
+    # Inference mode is faster, but its tensors cannot take part in learning.
     with torch.no_grad() if keep_segments else torch.inference_mode():
         return _roll_out(network, scenarios, samples, generator, mask_rule, keep_plans, keep_segments, limit)
 
@@ -194,10 +194,10 @@ def _run_segment(
         encoding: of the scenarios, by `network`.
         mission: B = S · G missions, which move on.
         samples: G.
-        generator: of the draws; None takes the likeliest.
-        under_way: (S,) int64 what `Segment.scenarios` is to be.
+        generator: draws the decisions; None takes the likeliest.
+        under_way: (S,) int64 values for `Segment.scenarios`.
         segments: where the decisions go, or None.
-        limit: after it no decision begins.
+        limit: no decision begins after it.
 
     Raises:
         OutOfTimeError: if the time is up.

@@ -53,7 +53,7 @@ class SeveralNetworks(nn.Module):
         raise NotImplementedError
 
     def which(self, states: DecisionStates) -> Tensor:
-        """(S, G) int64, the number of the network that decides for the robot to act.
+        """(S, G) int64, the number of the network that decides for the acting robot.
 
         Raises:
             ConfigError: if a robot at work has none.
@@ -61,7 +61,7 @@ class SeveralNetworks(nn.Module):
         raise NotImplementedError
 
     def encode(self, tasks: Tasks) -> SeveralEncodings:
-        """Embed the tasks, once a mission and network."""
+        """Embed the tasks, once per mission and network."""
         return SeveralEncodings(tasks, tuple(network.encode(tasks) for network in self.networks))
 
     def surroundings(self, tasks: Tasks) -> SeveralEncodings:
@@ -73,7 +73,7 @@ class SeveralNetworks(nn.Module):
         return self.networks[0].features(encoding.of_network[0], states)
 
     def forward(self, encoding: SeveralEncodings, states: DecisionStates, features: Candidates | None = None) -> Tensor:
-        """As `AllocationNetwork.forward`, each decision by the network of the robot to act.
+        """As `AllocationNetwork.forward`, each decision by the network of the acting robot.
 
         Raises:
             ConfigError: if a robot at work has no network.
@@ -109,7 +109,7 @@ class IndependentNetworks(SeveralNetworks):
         return self.networks[robot]
 
     def which(self, states: DecisionStates) -> Tensor:
-        """(S, G) int64, the robot to act."""
+        """(S, G) int64, the acting robot."""
         numbers = torch.arange(states.working.shape[-1], device=states.working.device)
         first, last = len(self.robots), int((states.working * numbers).max())
         if last == first:
@@ -145,7 +145,7 @@ class ByCapacityNetworks(SeveralNetworks):
         return tuple(cast(AllocationNetwork, network) for network in self.kinds)
 
     def which(self, states: DecisionStates) -> Tensor:
-        """(S, G) int64, the kind of the robot to act.
+        """(S, G) int64, the kind of the acting robot.
 
         Raises:
             ConfigError: if a robot at work is of another kind.
@@ -167,7 +167,7 @@ Network = AllocationNetwork | SeveralNetworks
 
 
 def check_kinds(kinds: Sequence[float]) -> None:
-    """Make sure that these are kinds of robots, the strongest last.
+    """Check that these are kinds of robots, the strongest last.
 
     Raises:
         ConfigError: if they are not.
@@ -185,9 +185,9 @@ _drawing = RLock()
 
 @contextmanager
 def seeded(seed: int) -> Iterator[None]:
-    """Within it torch's global generator, which draws initial weights, begins at a seed; then it is as it was.
+    """A context in which torch's global generator, which draws initial weights, starts from a seed; restored after it.
 
-    One Python thread at a time is in it: the others' draws would mix with its own.
+    Only one Python thread at a time is inside: others' draws would mix with its own.
     """
     with _drawing, torch.random.fork_rng(devices=[]):
         torch.manual_seed(seed)
@@ -203,8 +203,8 @@ def build_network(
         config: architecture.
         sharing: "shared" (one for all robots), "independent" (one per robot) or "by-capacity" (one per kind).
         robots: how many networks, if independent.
-        seed: of the initial weights.
-        kinds: of robots, if by capacity, see `check_kinds`.
+        seed: seeds the initial weights.
+        kinds: the kinds of robots, if by capacity, see `check_kinds`.
 
     Raises:
         ConfigError: if there is no such sharing or no such kinds.

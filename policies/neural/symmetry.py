@@ -22,7 +22,7 @@ SYMMETRIES = 8
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """How each of S scenarios is looked at.
+    """How each of S scenarios is seen.
 
     Attributes:
         flip: (S, 2) bool, whether x and y run backwards.
@@ -36,18 +36,18 @@ class View:
 
     @classmethod
     def of(cls, scenarios: ScenarioBatch) -> View:
-        """The symmetries 0 … 7, again and again, of S scenarios of which each 8 in a row are the same."""
+        """The symmetries 0 … 7 over and over, for S scenarios of which every 8 in a row are the same."""
         scales = scenarios.scales
         number = torch.arange(len(scenarios), device=scenarios.device) % SYMMETRIES
         return cls.numbered(number, (scales.extent / scales.length[:, None]).float())
 
     @classmethod
     def numbered(cls, number: Tensor, extent: Tensor) -> View:
-        """The symmetries by their numbers, (S,) int64 in 0 to 7, on maps that extend so far."""
+        """The symmetries by their numbers, (S,) int64 in 0 to 7, on maps of these extents."""
         return cls(torch.stack((number & 1, number & 2), -1) > 0, (number & 4) > 0, extent)
 
     def of_places(self, xy: Tensor) -> Tensor:
-        """(S, …, 2) places as they are seen."""
+        """(S, …, 2) places as seen in each scenario's symmetry."""
         shape = (len(xy), *[1] * (xy.dim() - 2), 2)
         flipped = torch.where(self.flip.view(shape), self.extent.view(shape) - xy, xy)
         return torch.where(self.swap.view((*shape[:-1], 1)), flipped.flip(-1), flipped)
@@ -55,7 +55,7 @@ class View:
 
 @dataclass(frozen=True, slots=True)
 class ViewedEncoding:
-    """A network's encoding of mirrored tasks, with how they were mirrored."""
+    """A network's encoding of mirrored tasks, and how they were mirrored."""
 
     inner: Any
     view: View

@@ -1,4 +1,4 @@
-"""Temperature: the same preferences, held with more or less certainty."""
+"""Temperature: the same preferences, with more or less certainty."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Trees of tensors: dataclasses and tuples that hold tensors, or others of their kind, and the same done to each."""
+"""Trees of tensors (nested dataclasses and tuples), and functions that map over their tensors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Trained policies on disk: `NAME.safetensors` holds the weights, `NAME.json` beside it says what they belong to.
+"""Trained policies on disk: `NAME.safetensors` holds the weights, `NAME.json` beside it describes them.
 
 Nothing is ever unpickled, so a policy from a stranger can be loaded safely.
 """
@@ -25,12 +25,12 @@ from mrta_zoo.rules import MaskRule
 from mrta_zoo.wording import counted
 
 FLOATS = (torch.float16, torch.bfloat16, torch.float32, torch.float64)
-"""What weights may be saved as."""
+"""Types that weights may be saved as."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PolicyInfo:
-    """What belongs to a set of weights.
+    """Description of a set of weights.
 
     Attributes:
         network: architecture.
@@ -84,17 +84,17 @@ def load_weights(path: Path) -> tuple[Network, PolicyInfo]:
 
 
 def build_with(tensors: dict[str, torch.Tensor], info: PolicyInfo, path: Path) -> Network:
-    """The network that `info` describes, with these weights; nothing large is made before they fit.
+    """The network that `info` describes, with these weights; nothing large is allocated before they are known to fit.
 
     Args:
         tensors: the weights.
         info: what they should belong to.
-        path: where they are from, for messages.
+        path: where they come from, for messages.
 
     Raises:
         ConfigError: if the weights don't fit the architecture.
     """
-    if info.sharing == "independent":  # before as many networks are made as it says
+    if info.sharing == "independent":  # checked before that many networks are made
         there = len({name.split(".")[1] for name in tensors if name.startswith("robots.")})
         if there != info.robots:
             raise ConfigError(
@@ -133,7 +133,7 @@ def read_tensors(path: Path) -> dict[str, torch.Tensor]:
 
 
 def load_state(network: Network, tensors: dict[str, torch.Tensor], path: Path) -> None:
-    """Put tensors into a network, all of them or none.
+    """Load tensors into a network, all of them or none.
 
     Raises:
         ConfigError: if a tensor is missing, left over, of another shape, not of floating point, or not finite.

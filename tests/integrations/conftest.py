@@ -13,7 +13,7 @@ collect_ignore_glob = [] if all(find_spec(library) for library in LIBRARIES) els
 
 @pytest.fixture(scope="session")
 def cluster() -> Iterator[None]:
-    """Ray, started once; it gives up after 30 seconds, which are over soon on a busy machine."""
+    """Ray, started once; tried again, as its limit of 30 seconds is short on a busy machine."""
     import ray
 
     for attempt in range(4):

@@ -260,12 +260,12 @@ FIRST = "encoder.embed.weight"
     ("change", "sentence"),
     [
         (lambda t: {}, "is missing"),
-        (lambda t: {**t, f"{FIRST}/exp_avg": torch.zeros(3)}, "is no finite float32 tensor of shape"),
-        (lambda t: {**t, f"{FIRST}/exp_avg": t[f"{FIRST}/exp_avg"].double()}, "is no finite float32 tensor of shape"),
-        (lambda t: {**t, f"{FIRST}/step": torch.zeros(3)}, r"is no finite float32 tensor of shape \(\)"),
+        (lambda t: {**t, f"{FIRST}/exp_avg": torch.zeros(3)}, "is not a finite float32 tensor of shape"),
+        (lambda t: {**t, f"{FIRST}/exp_avg": t[f"{FIRST}/exp_avg"].double()}, "is not a finite float32 tensor"),
+        (lambda t: {**t, f"{FIRST}/step": torch.zeros(3)}, r"is not a finite float32 tensor of shape \(\)"),
         (lambda t: {**t, f"{FIRST}/step": torch.tensor(-5.0)}, "has impossible moments"),
         (lambda t: {**t, f"{FIRST}/exp_avg_sq": t[f"{FIRST}/exp_avg_sq"] - 1}, "has impossible moments"),
-        (lambda t: {**t, f"{FIRST}/exp_avg": t[f"{FIRST}/exp_avg"] * torch.nan}, "is no finite float32 tensor"),
+        (lambda t: {**t, f"{FIRST}/exp_avg": t[f"{FIRST}/exp_avg"] * torch.nan}, "is not a finite float32 tensor"),
         (lambda t: {**t, "more": torch.zeros(1)}, "tensor 'more' belongs to no weight"),
     ],
 )  # fmt: skip

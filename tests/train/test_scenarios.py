@@ -39,7 +39,7 @@ def test_other_processes_draw_the_same_scenarios_and_are_missed_when_they_die() 
     assert not same(drawn[0], drawn[1])
     for process in active_children():
         process.kill()
-    with pytest.raises(ConfigError, match="a process that was at work was killed"):
+    with pytest.raises(ConfigError, match="a worker process was killed"):
         list(islice(ahead, 20))
 
 

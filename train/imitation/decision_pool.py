@@ -1,4 +1,4 @@
-"""Decisions of many plans in one place, to draw gradient steps from."""
+"""Pools of decisions from many plans, to draw gradient steps from."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mrta_zoo.scenario_batch import ScenarioBatch
 
 
 class DecisionPool:
-    """The decisions behind plans, one after another, to draw from more than once: following plans takes longer.
+    """The decisions behind plans, in one table, to draw from many times: following plans anew takes longer.
 
     Args:
         scenarios: S scenarios.
@@ -57,7 +57,7 @@ class DecisionPool:
         rows = torch.randint(len(self.count), (plans,), generator=generator).to(device)
         count = self.count[rows, None]
         share = torch.rand(plans, decisions, generator=generator, dtype=torch.float64).to(device)
-        # Of a plan without any some other's stands there, which is not live; the last one's would be beyond the end.
+        # A plan without decisions gets another plan's, which are not live; the clamp is for the last plan.
         at = (self._first[rows, None] + (share * count).long()).clamp(max=len(self.actions) - 1)
         drawn = Segment(
             scenarios=torch.arange(plans, device=device),

@@ -1,4 +1,4 @@
-"""Learning from plans: the decisions behind them, as the simulator would have put them to the robots."""
+"""The decisions behind plans, as the simulator would have put them to the robots."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from mrta_zoo.train.imitation.experts import ExpertPlan
 
 
 def turned(scenarios: ScenarioBatch, symmetry: Tensor) -> ScenarioBatch:
-    """The scenarios, each seen in one of its frame's eight symmetries; only four of them where that is not square.
+    """The scenarios, each seen in one of its frame's eight symmetries, or of four if the frame is not square.
 
     Args:
         scenarios: S scenarios.
@@ -57,12 +57,12 @@ class PlanBatch:
 def follow(network: Network, scenarios: ScenarioBatch, routes: Tensor) -> list[Segment]:
     """The decisions (G = 1) by which robots follow plans under the mask rule "feasible".
 
-    A robot at the end of its route retires, whatever it could still choose, which no label says.
+    A robot at the end of its route retires, even if it could choose more: the plan has no label for that.
 
     Args:
-        network: says what it will want to know of each state.
+        network: computes the features of each state.
         scenarios: S scenarios.
-        routes: (S, M, T) int64 the tasks of each robot in order, at least one −1 behind them; each finishes in time.
+        routes: (S, M, T) int64 the tasks of each robot in order, then at least one −1; each task finishes in time.
     """
     mission = BatchMission(scenarios, "feasible")
     encoding: Any = network.surroundings(Tasks.of_batch(scenarios))
@@ -77,7 +77,7 @@ def follow(network: Network, scenarios: ScenarioBatch, routes: Tensor) -> list[S
             task = routes[rows, robot, position[rows, robot]]
             at_end = (task < 0) & ~mission.done
             mission.retire(at_end)
-            live = ~mission.done & ~at_end  # where a robot has retired, the next one has its turn next time
+            live = ~mission.done & ~at_end  # where a robot has retired, the next one gets its turn in the next round
             states = watch.states()
             task = torch.where(live, task, 0)
             taken.append(

@@ -1,4 +1,4 @@
-"""Plans of a strong search on training scenarios, for a network to imitate before it learns by itself.
+"""Expert plans: those of a strong search on training scenarios, for a network to imitate before REINFORCE.
 
 A plan is stored as its routes alone: its scenario follows from the seed and the plan's number.
 """
@@ -31,7 +31,7 @@ from mrta_zoo.verify import verify
 ITERATIONS_PER_TASK = 24
 """How long the search (`EilsSolver`) looks for each plan: about 0.1 s with 100 tasks, within 1 % of its best."""
 SHARD = 500
-"""Plans a file."""
+"""Plans per file."""
 
 UNREADABLE = (
     OSError,
@@ -44,7 +44,7 @@ UNREADABLE = (
     zipfile.BadZipFile,
     zlib.error,
 )
-"""What NumPy raises of a damaged file."""
+"""What NumPy raises for a damaged file."""
 
 Routes = tuple[tuple[int, ...], ...]
 
@@ -58,7 +58,7 @@ class ExpertPlan:
 
 
 def expert_scenario(config: TrainConfig, number: int) -> Scenario:
-    """The scenario of the plan of that number."""
+    """The scenario of plan `number`."""
     rng = random_numbers(config.seed, Stream.PLANS, number)
     return training_generator(config, draw_size(config, rng))(rng)
 
@@ -75,7 +75,7 @@ def make_shard(config: TrainConfig, first: int, folder: Path) -> Path:
     """
     from mrta_zoo.policies.classical.local_search.eils import EilsConfig, EilsSolver
 
-    # Refilling by deadline is younger than the shipped policies: these plans are the ones that they imitated.
+    # Insertion by deadline is newer than the shipped policies, which imitated the plans made without it.
     solver = EilsSolver(config=EilsConfig(iterations_per_task=ITERATIONS_PER_TASK, by_deadline=0.0))
     routes = [solver.solve(expert_scenario(config, number)).routes for number in range(first, first + SHARD)]
     path = shard_path(folder, first)
@@ -97,7 +97,7 @@ def read_plans(config: TrainConfig, folder: Path, most: int, workers: int = 0) -
         config: the run.
         folder: where the files are.
         most: how many plans to read.
-        workers: processes that read; 0 to read here.
+        workers: processes that read; 0 reads in this process.
 
     Raises:
         ConfigError: if a file is damaged, or does not belong to the configuration: the first plan of each file must
@@ -139,7 +139,7 @@ def _read_shard(config: TrainConfig, path: Path) -> list[ExpertPlan]:
 
 
 def _fits(scenario: Scenario, routes: Routes, in_full: bool) -> bool:
-    """Whether the routes are of this scenario and, if checked in full, which takes longer, each task is in time."""
+    """Whether the routes can be this scenario's; in full, which takes longer, also whether each task is in time."""
     if not in_full:
         tasks = [task for route in routes for task in route]
         possible = all(0 <= task < scenario.num_tasks for task in tasks)

@@ -22,7 +22,7 @@ from mrta_zoo.train.streams import Stream, random_numbers
 from mrta_zoo.wording import counted
 
 POOL_STEPS, POOL_PLANS = 96, 8192
-"""Steps that a pool of decisions is used for, and the most plans that it holds, over all sizes of scenarios. A decision
+"""Steps that a pool of decisions serves, and the most plans that it holds over all sizes of scenarios. One decision
 takes some 3 kB."""
 
 
@@ -31,8 +31,8 @@ class Imitator:
 
     Args:
         config: the run.
-        network: what learns.
-        device: where it is.
+        network: the one that learns.
+        device: where the network is.
     """
 
     def __init__(self, config: TrainConfig, network: Network, device: torch.device) -> None:
@@ -41,10 +41,10 @@ class Imitator:
         self._pools: tuple[int, dict[int, DecisionPool]] = (-1, {})
 
     def set_plans(self, plans: Sequence[ExpertPlan]) -> None:
-        """Give the plans to imitate.
+        """Set the plans to imitate.
 
         Raises:
-            ConfigError: if there are none of some size.
+            ConfigError: if there are no plans for one of the sizes.
         """
         for size in self._config.tasks:
             of_size = [plan for plan in plans if plan.scenario.num_tasks == size]
@@ -53,17 +53,17 @@ class Imitator:
             self._plans[size] = PlanBatch(of_size, self._device)
 
     def release(self) -> None:
-        """Forget the plans, which take memory, when imitation is over."""
+        """Free the memory of the plans, once imitation is over."""
         self._plans, self._pools = {}, (-1, {})
 
     def accumulate(self, update: int) -> tuple[float, int]:
-        """Add the gradients of minus the mean log-probability of the decisions behind some plans.
+        """Accumulate the gradients of the negative mean log-probability of the decisions behind some plans.
 
         Args:
             update: number of the step.
 
         Returns:
-            that mean's negative, and the number of decisions.
+            The negative mean log-probability, and the number of decisions.
 
         Raises:
             ConfigError: if there are no plans to imitate.
@@ -99,7 +99,7 @@ class Imitator:
         return scenarios, follow(self._network, scenarios, plans.routes[chosen])
 
     def _pool(self, number: int, tasks: int) -> DecisionPool:
-        """The pool of that number, of scenarios with so many tasks."""
+        """Pool `number`, of scenarios with this many tasks."""
         config = self._config
         if self._pools[0] != number:
             self._pools = (number, {})

@@ -1,4 +1,4 @@
-"""Making the plans to imitate, in as many processes as there are cores to spare, with progress."""
+"""Making the plans to imitate, in several processes, with a progress bar."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def make_plans(config: TrainConfig, folder: Path, workers: int = 1, console: Con
         pool_of(workers) as pool,
     ):
         bar = progress.add_task("", total=missing * SHARD)
-        # An interrupt need not wait for the files under way: they are there as a whole or not at all.
+        # An interrupt need not wait for unfinished files: a file is there as a whole or not at all.
         for made in as_completed([pool.submit(make_shard, config, first, folder) for first in todo]):
             made.result()
             progress.advance(bar, SHARD)

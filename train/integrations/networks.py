@@ -19,7 +19,7 @@ from mrta_zoo.policies.protocol import Policy
 
 Kind = Literal["mlp", "capam"]
 FORM: dict[Kind, ObservationForm] = {"mlp": "masked", "capam": "dict"}
-"""In which form each reads observations."""
+"""The form of observations that each reads."""
 
 
 class Mlp(nn.Module):
@@ -37,12 +37,12 @@ class Mlp(nn.Module):
         self.critic = _layers(features, width, 1)
 
     def logits(self, observation: Mapping[str, Tensor]) -> Tensor:
-        """(…, actions) scores; the least finite number where the mask forbids."""
+        """(…, actions) scores; the lowest finite number where the mask forbids."""
         scores: Tensor = self.actor(observation["observation"])
         return scores.masked_fill(observation["action_mask"] <= 0, torch.finfo(scores.dtype).min)
 
     def value(self, observation: Mapping[str, Tensor]) -> Tensor:
-        """(…) what is expected of the rest of the mission."""
+        """(…) expected return of the rest of the mission."""
         value: Tensor = self.critic(observation["observation"]).squeeze(-1)
         return value
 
@@ -57,7 +57,7 @@ def build(kind: Kind, features: int, actions: int, seed: int) -> Mlp | ActorCrit
     """A new network. The same seed gives the same weights, and the global generator is left alone.
 
     Args:
-        kind: which; CapAM needs to know neither of the next two.
+        kind: which network; CapAM needs neither of the next two.
         features: length of a flat observation.
         actions: number of actions.
         seed: of the weights.

@@ -28,13 +28,13 @@ Planner = Callable[[Scenario], Plan]
 
 
 class Site:
-    """The same 10 tasks every day; 2 robots, of other capacities every day, begin it anywhere.
+    """The same 10 tasks every day, and 2 robots that start anywhere, with other capacities each day.
 
     Random legal choices complete about 53 % of them, and the nearest task 73 %.
 
     Attributes:
-        tasks: least and greatest number of tasks, by which the environment knows how much room it needs.
-        robots: likewise of robots.
+        tasks: fewest and most tasks, from which the environment knows how much room it needs.
+        robots: likewise for robots.
     """
 
     tasks: ClassVar = (TASKS, TASKS)
@@ -55,12 +55,12 @@ class Site:
 
 
 def options(observation: ObservationForm) -> dict[str, Any]:
-    """What to make the environment with, in any of its forms: ``mrta_v0.env(**options("flat"))``."""
+    """Options of the environment, in any of its forms: ``mrta_v0.env(**options("flat"))``."""
     return {"generator": Site(), "reward": "completion", "observation": observation}
 
 
 def in_aec_loop(policy: Policy) -> Planner:
-    """Plans that a policy makes in the environment, in the form of observation that it asks for, if it does."""
+    """A planner by a policy in the environment, with the form of observation that the policy asks for, if any."""
     form: ObservationForm = getattr(policy, "observation", "dict")
     return lambda scenario: run_in_environment(policy, scenario, observation=form)
 

@@ -27,7 +27,7 @@ from mrta_zoo.train.integrations.problem import options, show
 
 
 class RllibEnv(PettingZooEnv):
-    """RLlib's wrapper, told of all robots that there may be: by itself it knows only those of the first episode.
+    """RLlib's wrapper, with all possible robots: by itself it knows only those of the first episode.
 
     Args:
         config: options of `mrta_v0.env`.
@@ -95,8 +95,8 @@ def train(
     """Train on the small problem.
 
     Args:
-        seed: of weights, scenarios and choices.
-        iterations: of PPO, 1000 decisions each.
+        seed: seeds weights, scenarios and choices.
+        iterations: of PPO, with 1000 decisions each.
         network: a plain network, or CapAM.
         sharing: one for all robots, or one for each.
     """

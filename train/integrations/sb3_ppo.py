@@ -37,7 +37,7 @@ def train(seed: int = 0, steps: int = 15_000, copies: int = 8, processes: bool =
     """Train on the small problem.
 
     Args:
-        seed: of weights, scenarios and choices.
+        seed: seeds weights, scenarios and choices.
         steps: decisions.
         copies: environments side by side.
         processes: whether each has a process of its own.

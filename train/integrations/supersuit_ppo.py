@@ -1,8 +1,8 @@
-"""SuperSuit: its wrappers and its vector environment, with SB3's PPO, which knows no masks.
+"""SuperSuit: its wrappers and its vector environment, with SB3's PPO, which cannot mask actions.
 
-The parallel form, flat; SuperSuit makes each robot a row of a vector environment. An illegal action is replaced by the
-next legal one, for PPO would need long to learn what is legal.
-Wrappers, as in `wrapped`, each make it slower: SuperSuit turns the environment into the AEC form and back for them.
+It takes the parallel form, flat, and makes each robot a row of a vector environment. An illegal action is replaced by
+the next legal one, since PPO would take long to learn what is legal. Each wrapper, as in `wrapped`, makes it slower:
+for them SuperSuit turns the environment into the AEC form and back.
 
 Run it with ``python -m mrta_zoo.train.integrations.supersuit_ppo --seed 0``.
 """
@@ -29,13 +29,13 @@ def make_env() -> Any:
 
 
 def wrapped(steps: int = 2) -> Any:
-    """The same padded, flattened, with so many steps in each observation, and the number of its robot."""
+    """The same environment, padded and flattened, with `steps` steps and the robot's number in each observation."""
     env = supersuit.flatten_v0(supersuit.pad_action_space_v0(supersuit.pad_observations_v0(make_env())))
     return supersuit.agent_indicator_v0(supersuit.frame_stack_v1(env, steps))
 
 
 class Planner:
-    """A trained model, in the parallel environment."""
+    """A trained model that plans in the parallel environment."""
 
     def __init__(self, model: PPO) -> None:
         self.model = model
@@ -52,7 +52,7 @@ class Planner:
 
 
 def vectorised(env: Any, count: int) -> Any:
-    """So many copies side by side, every robot of each a row, as SB3 wants them."""
+    """`count` copies side by side, with a row for every robot of each, as SB3 expects them."""
     envs = supersuit.pettingzoo_env_to_vec_env_v1(env)
     return supersuit.concat_vec_envs_v1(envs, count, num_cpus=1, base_class="stable_baselines3")
 
@@ -60,7 +60,7 @@ def vectorised(env: Any, count: int) -> Any:
 @few_threads()
 def learn(envs: Any, steps: int, seed: int = 0) -> PPO:
     """SB3's PPO on a vector environment."""
-    set_random_seed(seed)  # by `PPO(seed=…)` SB3 would seed the environments, in a way that SuperSuit's don't know
+    set_random_seed(seed)  # `PPO(seed=…)` would also seed the environments, in a way that SuperSuit's do not know
     envs.venv.reset(seed=seed)
     model = PPO("MlpPolicy", envs, n_steps=64, batch_size=256, n_epochs=8, gamma=1.0, learning_rate=1e-3, ent_coef=0.01)
     return model.learn(steps)
@@ -70,8 +70,8 @@ def train(seed: int = 0, steps: int = 20_000) -> Planner:
     """Train on the small problem.
 
     Args:
-        seed: of weights, scenarios and choices.
-        steps: of the robots, those in which they can but wait included.
+        seed: seeds weights, scenarios and choices.
+        steps: of the robots, including those in which they can only wait.
     """
     return Planner(learn(vectorised(make_env(), count=16), steps, seed))
 

@@ -33,7 +33,7 @@ def tensors(observation: Batch) -> dict[str, Any]:
 
 
 class Actor(nn.Module):
-    """Masked logits, as Tianshou asks for them."""
+    """Masked logits, as Tianshou expects them."""
 
     def __init__(self, net: Any) -> None:
         super().__init__()
@@ -45,7 +45,7 @@ class Actor(nn.Module):
 
 
 class Critic(nn.Module):
-    """The value, likewise."""
+    """The value, as Tianshou expects it."""
 
     def __init__(self, net: Any) -> None:
         super().__init__()
@@ -62,8 +62,8 @@ def train(seed: int = 0, epochs: int = 5, network: Kind = "mlp") -> Policy:
     """Train on the small problem.
 
     Args:
-        seed: of weights, scenarios and choices.
-        epochs: of 1000 decisions each.
+        seed: seeds weights, scenarios and choices.
+        epochs: number of epochs, with 1000 decisions each.
         network: a plain network, or CapAM.
     """
     torch.manual_seed(seed)  # Tianshou draws actions from the global generators

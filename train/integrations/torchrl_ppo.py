@@ -32,7 +32,7 @@ LOGITS, ACTION, LOG_PROB, VALUE = (("agents", name) for name in ("logits", "acti
 def make_env(seed: int, **changes: Any) -> PettingZooWrapper:
     """The AEC environment with all robots in one group, so that one network serves them as a batch.
 
-    In the flat form: of a Dict with a mask TorchRL takes the mask for its own, and then stumbles over that in infos.
+    In the flat form: given a Dict, TorchRL takes its mask as its own, and then stumbles over the one in infos.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # "tested using PettingZoo 1.24.3"
@@ -45,8 +45,8 @@ def train(seed: int = 0, iterations: int = 5, network: Kind = "mlp") -> Policy:
     """Train on the small problem.
 
     Args:
-        seed: of weights, scenarios and choices.
-        iterations: of PPO, 1000 decisions each.
+        seed: seeds weights, scenarios and choices.
+        iterations: of PPO, with 1000 decisions each.
         network: a plain network, or CapAM.
     """
     torch.manual_seed(seed)  # TorchRL draws from the global generator

@@ -18,15 +18,15 @@ class CandidateDecoder(nn.Module):
     """Scores the candidates by letting them, the acting robot and its nearest peers attend to each other.
 
     Ours, not the paper's. Attention weights are biased, head by head, by how each task would follow another one, or
-    what a robot is at (`Candidates.pairs`), in the manner of the edge biases of Graphormer (Ying et al. 2021). To each
-    score comes −β · (travel + work), β learned, so that training starts near the nearest-task heuristic and not from
+    what a robot is doing (`Candidates.pairs`), in the manner of the edge biases of Graphormer (Ying et al. 2021). Each
+    score includes −β · (travel + work), β learned, so that training starts near the nearest-task heuristic and not from
     noise.
 
     Args:
         embedding: h, length of embeddings.
         heads: number of attention heads.
         layers: number of layers; with 0 each task is scored by itself.
-        beta: β at the start, a score a crossing.
+        beta: β at the start, in units of score per crossing.
     """
 
     def __init__(self, embedding: int, heads: int, layers: int, beta: float = 30.0) -> None:
@@ -35,7 +35,7 @@ class CandidateDecoder(nn.Module):
         self.encoded = nn.Linear(embedding, embedding, bias=False)
         self.robot = nn.Linear(len(ROBOT_COLUMNS), embedding)
         self.mission = nn.Linear(len(MISSION_COLUMNS), embedding)
-        # Of all layers and heads at once: a map from so few columns costs what it reads, not what it computes.
+        # For all layers and heads at once: with so few columns, reading costs more than computing.
         if layers:
             self.to_task = nn.Linear(PAIR_COLUMNS, layers * heads)
             self.to_robot = nn.Linear(PAIR_COLUMNS, layers * heads)
@@ -84,13 +84,13 @@ class CandidateDecoder(nn.Module):
 
 
 def _map_columns(linear: nn.Linear, columns: Tensor) -> Tensor:
-    """(B, C, …) to (B, C', …), what lies in between left where it is."""
+    """A linear map of the columns, (B, C, …) to (B, C', …), without moving any dimension."""
     out: Tensor = (linear.weight @ columns.flatten(2) + linear.bias[:, None]).unflatten(2, columns.shape[2:])
     return out
 
 
 class _Norm(nn.LayerNorm):
-    """Normalises in the precision of what it is given; autocast would have float32, which takes longer on a GPU."""
+    """Normalises in the precision of its input; autocast would use float32, which takes longer on a GPU."""
 
     def forward(self, input: Tensor) -> Tensor:
         if input.dtype == self.weight.dtype:
@@ -114,7 +114,7 @@ class _Layer(nn.Module):
         )
 
     def forward(self, hidden: Tensor, bias: Tensor) -> Tensor:
-        """(B, R + K, h) to the same; bias (B, heads, R + K, R + K) of the attention weights' logarithms."""
+        """(B, R + K, h) to the same; bias (B, heads, R + K, R + K), added to the attention logits."""
         normed = self.norms[0](hidden)
         query, key, value = self.qkv(normed).unflatten(-1, (3, self.heads, -1)).permute(2, 0, 3, 1, 4)
         mixed = nn.functional.scaled_dot_product_attention(query, key, value, attn_mask=bias.to(query.dtype))

@@ -1,4 +1,4 @@
-"""What a good dispatcher looks at when a robot is to choose: the tasks within reach, the peers near by, and times.
+"""Decision-time features: the candidate tasks, the nearest peers and their times, as a good dispatcher sees them.
 
 Ours, not the paper's. Times are in crossings (`mrta_zoo.policies.neural.capam.inputs`).
 """
@@ -33,9 +33,9 @@ class Candidates:
         valid: (S, G, K) bool, false where there are fewer than K.
         task: (S, G, K, len(TASK_COLUMNS)) what is known of each:
             where it lies from the robot, and on the map (dx, dy, x, y, in L);
-            time to get there and to do it (travel, work); half of that from the finish to the deadline (slack;
-            tightness is 1 / (1 + 10 times the whole)); a quarter of that from now to the deadline (left);
-            by how much the robot is there before the earliest, and the second peer (head_start, second_head_start);
+            time to get there and to do it (travel, work); half the time from the finish to the deadline (slack;
+            tightness is 1 / (1 + 10 times the whole)); a quarter of the time from now to the deadline (left);
+            how much earlier the robot is there than the first and the second peer (head_start, second_head_start);
             the share of the peers that could do it in time (rivals);
             time from it to the nearest and the second of its neighbours that could still be done after it (next_gap,
             second_gap), and the share of its neighbours that could (next_count);
@@ -70,10 +70,10 @@ class Candidates:
     def of(
         cls, tasks: Tasks, near: Neighbourhood, states: DecisionStates, most_tasks: int, most_peers: int
     ) -> Candidates:
-        """The candidates of G decisions in each of S scenarios: of what the mask allows the quickest to be done."""
+        """The candidates of G decisions in each of S scenarios: the quickest tasks that the mask allows."""
         robots = Robots.of(tasks, states, most_peers)
         every = _Durations.of(tasks, states, robots)
-        # What lies beyond the quickest is seldom the right choice, and far more of it in large missions.
+        # Slower tasks are seldom the right choice, and there are far more of them in large missions.
         key = (every.busy.double() + 1e-6 * kind(tasks)[:, None]).masked_fill(~states.mask, torch.inf)
         index = key.topk(min(most_tasks, key.shape[-1]), dim=-1, largest=False).indices
         valid = states.mask.gather(2, index)
@@ -106,9 +106,9 @@ class Candidates:
         )
 
     def pairs(self) -> Tensor:
-        """(S, G, PAIR_COLUMNS, R + K, K): how each task would follow where a robot, or a task, ends.
+        """(S, G, PAIR_COLUMNS, R + K, K): each candidate as the next task of a robot, or after another.
 
-        The time that it would take (in three scales), the time to spare, and whether there is any.
+        The time that it would take (on three scales), the time to spare, and whether there is any.
         """
         robots = self.place.shape[-2] - self.index.shape[-1]
         way = distance(self.place[..., :, None, :], self.place[..., None, robots:, :])
@@ -125,7 +125,7 @@ class Candidates:
 
 @dataclass(frozen=True, slots=True)
 class _Durations:
-    """What tasks take the robot to act, all of them (S, G, N) or the candidates (S, G, K), in crossings.
+    """How long tasks take the acting robot, all of them (S, G, N) or the candidates (S, G, K), in crossings.
 
     Attributes:
         travel: to get there.
@@ -173,7 +173,7 @@ def _rivalry(robots: Robots, own: _Durations, xy: Tensor, work: Tensor) -> tuple
 def _what_could_follow(
     near: Neighbourhood, states: DecisionStates, robots: Robots, every: _Durations, own: _Durations, index: Tensor
 ) -> tuple[Tensor, ...]:
-    """The way to the nearest and the second neighbour that could follow each candidate, and the share that could."""
+    """Travel to the nearest and the second neighbour that could follow each candidate, and the share that could."""
     s, g, k = index.shape
     j = near.index.shape[-1]
     wide = index.reshape(s, g * k, 1).expand(-1, -1, j)

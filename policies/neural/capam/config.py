@@ -14,8 +14,8 @@ class NetworkConfig:
     """Architecture of one policy network. The defaults are the paper's (§III and §IV-C).
 
     Attributes:
-        encoder: "capsule" for CapAM, "attention" for the attention model (AM-RL), "none" for tasks that know nothing of
-            each other, or one of your own (`ENCODERS`).
+        encoder: "capsule" for CapAM, "attention" for the attention model (AM-RL), "none" for a linear
+            map of each task by itself, or one of your own (`ENCODERS`).
         embedding: h, length of embeddings and of the query; a multiple of `heads`.
         heads: number of attention heads, in the decoder and in the attention encoder.
         layers: L_e, number of encoder layers (1 in CapAM, 3 in AM).
@@ -24,13 +24,13 @@ class NetworkConfig:
         decoder: "attention" for the paper's; "candidates" for CapAM+, which looks at what matters at the time of the
             decision (`mrta_zoo.policies.neural.capam.candidates`).
         decision_layers: number of layers of the "candidates" decoder.
-        candidates: of the tasks that a robot may choose, how many that decoder looks at: the quickest. The shapes of
-            weights depend neither on this nor on `peers`: what was trained with some may decide with more.
-        peers: how many of its peers that decoder looks at: the nearest.
+        candidates: how many of the tasks that a robot may choose that decoder looks at, the quickest ones. No weight
+            depends in shape on this or on `peers`: a network may decide with more than it was trained with.
+        peers: how many of the robot's peers that decoder looks at, the nearest ones.
         node_features: what the encoder knows of each task, names in `mrta_zoo.policies.neural.capam.node_features`. The
-            paper's are x, y and deadline; it allows more, and here come workload and two features that relate
+            paper has x, y and deadline, and allows more; the default adds workload and two features that relate
             deadlines and workloads to the size of the map.
-        context_features: what the "attention" decoder knows of the moment besides the paper's features, names in
+        context_features: what the "attention" decoder knows of the state besides the paper's features, names in
             `mrta_zoo.policies.neural.capam.context`, all of them users' own.
         tanh_clip: scores are clipped to ± this, as in Kool et al. (2019).
     """
@@ -78,7 +78,7 @@ class NetworkConfig:
             raise ConfigError(f"tanh_clip is {self.tanh_clip}; expected a number > 0")
 
     def differences(self, other: NetworkConfig) -> dict[str, tuple[Any, Any]]:
-        """What keeps weights of one from serving the other: settings that differ, `candidates` and `peers` aside."""
+        """The settings in which two networks cannot share weights: all that differ, except `candidates` and `peers`."""
         values = {each.name: (getattr(self, each.name), getattr(other, each.name)) for each in fields(self)}
         return {
             name: pair for name, pair in values.items() if name not in ("candidates", "peers") and pair[0] != pair[1]

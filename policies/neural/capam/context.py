@@ -11,7 +11,7 @@ from mrta_zoo.policies.neural.capam.inputs import USUAL_CROSSINGS, DecisionState
 from mrta_zoo.policies.neural.capam.named import Named, of_shape
 
 ContextFeature = Callable[[Tasks, DecisionStates], Tensor]
-"""(S, G) numbers, one a decision; best about in [0, 1]."""
+"""(S, G) numbers, one per decision; best roughly in [0, 1]."""
 
 CONTEXT_FEATURES: Named[ContextFeature] = Named("context_features", {})
 """Features besides the paper's by the names that `NetworkConfig.context_features` lists, all of them users' own:
@@ -21,13 +21,13 @@ CONTEXT_FEATURES: Named[ContextFeature] = Named("context_features", {})
 class Context(nn.Module):
     """The paper's five features: elapsed time, own capacity, own place, the peers' destinations and capacities.
 
-    The paper concatenates the peers, which fixes their number. Here each peer's destination and capacity pass one
-    shared layer, and mean and maximum over the peers are taken: any number of peers, in any order. The two scales
-    of the mission (`Tasks.horizon`, `Tasks.work_unit`) go along, since everything else is relative to them.
+    The paper concatenates the peers, which fixes their number. Here each peer's destination and capacity pass
+    through one shared layer, then mean and maximum over the peers: any number of peers, in any order. The two scales
+    of the mission (`Tasks.horizon`, `Tasks.work_unit`) are added, since everything else is relative to them.
 
     Args:
         embedding: h, length of the query.
-        more: names of features in `CONTEXT_FEATURES` that go along.
+        more: names of features in `CONTEXT_FEATURES` to add.
 
     Raises:
         ConfigError: if there is no feature of some name.

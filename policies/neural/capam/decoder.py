@@ -9,12 +9,12 @@ import torch
 from torch import Tensor, nn
 
 WIDENED = 4
-"""How many times the embedding the feed-forward layer is wide, as in Vaswani et al. (2017)."""
+"""Width of the feed-forward layer as a multiple of the embedding's, as in Vaswani et al. (2017)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Keys:
-    """What the decoder needs of the embeddings; computed once a mission.
+    """What the decoder needs of the embeddings; computed once per mission.
 
     Attributes:
         glimpse_key: (S, heads, h / heads, N).
@@ -31,7 +31,7 @@ class AttentionDecoder(nn.Module):
     """Attention from the query to the tasks (paper Eqs. 5-6), a feed-forward layer, then clipped scores.
 
     Scores are compatibilities with the tasks, as in Kool et al. (2019). Deviations from the paper, which says little of
-    the feed-forward layer and puts batch norms around it: the query goes past the attention (a residual connection, as
+    the feed-forward layer and puts batch norms around it: the query bypasses the attention (a residual connection, as
     in Vaswani et al. 2017), and a layer norm takes the place of batch norms, so that no decision depends on others.
 
     Args:
@@ -64,7 +64,7 @@ class AttentionDecoder(nn.Module):
         """Score every task.
 
         Args:
-            query: (S, G, h) one query a decision.
+            query: (S, G, h) one query per decision.
             keys: of the tasks.
             mask: (S, G, N) bool, what may be chosen; where nothing may, scores are meaningless but finite.
 

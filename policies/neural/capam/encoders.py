@@ -16,8 +16,8 @@ from mrta_zoo.policies.neural.capam.named import Named
 EncoderBuilder = Callable[[int, NetworkConfig], nn.Module]
 """Builds, for a number of node features, a module ``(nodes, exists, graph) -> embeddings``.
 
-See `CapsuleEncoder.forward` for the shapes. Padding must neither change the embeddings of the tasks nor have any of its
-own but 0; `tests/policies/neural/test_network.py` checks that, and more, of every encoder in `ENCODERS`.
+See `CapsuleEncoder.forward` for the shapes. Padding must not change the embeddings of the tasks, and must itself be
+embedded as 0; `tests/policies/neural/test_network.py` checks that, and more, of every encoder in `ENCODERS`.
 """
 
 ENCODERS: Named[EncoderBuilder] = Named(
@@ -32,7 +32,7 @@ ENCODERS: Named[EncoderBuilder] = Named(
 
 
 def build_encoder(features: int, config: NetworkConfig) -> nn.Module:
-    """The encoder that `config` names, for nodes of so many features.
+    """The encoder that `config` names, for nodes with this many features.
 
     Raises:
         ConfigError: if there is none of that name, or what it builds is no module.

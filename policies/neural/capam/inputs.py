@@ -1,4 +1,4 @@
-"""What the networks read: observations as tensors, from the AEC environment or from the batched simulator.
+"""Network inputs: observations as tensors, from the AEC environment or from the batched simulator.
 
 Shapes: S scenarios, G decisions of each (several samples of a mission, or several states), N tasks, M robots.
 Places are in lengths L of the frame (`mrta_zoo.scales`); times either as shares of T, the latest deadline that can
@@ -71,7 +71,7 @@ class Tasks:
 
     @classmethod
     def of_tables(cls, tables: Mapping[str, Tensor]) -> Tasks:
-        """The same of observations' tables already stacked: ``tasks`` (S, N, 8) and ``mission`` (S, 3)."""
+        """The same from observations' tables already stacked: ``tasks`` (S, N, 8) and ``mission`` (S, 3)."""
         tasks, mission = tables["tasks"], tables["mission"]
         return _tasks(
             tasks[..., [_TASK["x"], _TASK["y"]]],
@@ -93,9 +93,9 @@ class DecisionStates:
         speed: (S, G, M) as a share of the largest speed.
         ready: (S, G, M) when each robot is free next, as a share of T, at most 1.
         working: (S, G, M) bool, neither retired nor padding.
-        ego: (S, G) int64, the robot to act.
+        ego: (S, G) int64, the acting robot.
         elapsed: (S, G) as a share of T, at most 1.
-        mask: (S, G, N) bool, what the robot to act may choose.
+        mask: (S, G, N) bool, what the acting robot may choose.
     """
 
     xy: Tensor
@@ -120,7 +120,7 @@ class DecisionStates:
 
     @classmethod
     def of_tables(cls, tables: Mapping[str, Tensor], mask: Tensor) -> DecisionStates:
-        """The same of tables already stacked: ``robots`` (S, M, 7) and ``mission`` (S, 3), with the mask (S, N)."""
+        """The same from tables already stacked: ``robots`` (S, M, 7) and ``mission`` (S, 3), with the mask (S, N)."""
         robots = tables["robots"][:, None]
         return cls(
             xy=robots[..., [_ROBOT["x"], _ROBOT["y"]]],
@@ -135,12 +135,12 @@ class DecisionStates:
 
     @property
     def peers(self) -> Tensor:
-        """(S, G, M) bool, the working robots other than the one to act."""
+        """(S, G, M) bool, the working robots other than the acting one."""
         index = torch.arange(self.working.shape[-1], device=self.working.device)
         return self.working & (index != self.ego[..., None])
 
     def of_ego(self, table: Tensor) -> Tensor:
-        """The row of a (S, G, M, …) table that belongs to the robot to act: (S, G, …)."""
+        """The row of a (S, G, M, …) table that belongs to the acting robot: (S, G, …)."""
         index = self.ego.reshape(*self.ego.shape, *[1] * (table.dim() - 2))
         return table.gather(2, index.expand(*self.ego.shape, 1, *table.shape[3:])).squeeze(2)
 

@@ -1,4 +1,4 @@
-"""An encoder that looks at each task by itself: what is left when there is none."""
+"""The encoder "none": a linear map of each task by itself."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a configuration can name: the package's own, and what users register."""
+"""Registries of what a configuration can name: the package's own entries, and those that users register."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ T = TypeVar("T")
 
 
 class Named(dict[str, T]):
-    """Things by the names that a field of `NetworkConfig` takes.
+    """A registry: entries by the names that a field of `NetworkConfig` takes.
 
     Configurations and saved policies hold names alone: whoever loads a policy has to register what it names first.
 
@@ -51,10 +51,10 @@ class Named(dict[str, T]):
         return decorator
 
     def find(self, name: str) -> T:
-        """What has that name.
+        """The entry of that name.
 
         Raises:
-            ConfigError: if nothing has.
+            ConfigError: if there is none.
         """
         if name not in self:
             raise ConfigError(
@@ -65,17 +65,17 @@ class Named(dict[str, T]):
 
 
 def of_shape(kind: str, name: str, values: object, shape: tuple[int, ...], device: torch.device) -> Tensor:
-    """What a feature or an encoder gave, if it is what it should be.
+    """Check what a feature or an encoder returned, and return it.
 
     Args:
-        kind: what it is, for messages.
-        name: of it.
-        values: what it gave.
-        shape: what it should have.
-        device: where it should be.
+        kind: "node feature" or the like, for messages.
+        name: its name.
+        values: what it returned.
+        shape: the shape expected.
+        device: the device expected.
 
     Raises:
-        ConfigError: if it is no tensor of that shape, there, dense and of real numbers.
+        ConfigError: if it is not a dense tensor of real numbers, of that shape and on that device.
     """
     if not isinstance(values, Tensor) or values.shape != shape:
         gave = f"shape {tuple(values.shape)}" if isinstance(values, Tensor) else f"a {type(values).__name__}"

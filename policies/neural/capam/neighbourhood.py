@@ -1,4 +1,4 @@
-"""Each task's nearest tasks, found once a mission."""
+"""Each task's nearest tasks, found once per mission."""
 
 from __future__ import annotations
 
@@ -37,10 +37,10 @@ class Neighbourhood:
 
 
 def kind(tasks: Tasks) -> Tensor:
-    """(S, N) float64 numbers that break ties, frequent on whole coordinates, by what tasks are, not how numbered."""
+    """(S, N) float64 numbers that break ties, frequent on whole coordinates, by the tasks' values, not their order."""
     return tasks.deadline.double() + 2.7 * tasks.xy[..., 0] + 1.9 * tasks.xy[..., 1] + 1.3 * tasks.workload
 
 
 def distance(a: Tensor, b: Tensor) -> Tensor:
-    """(…) how far (…, 2) places are from others."""
+    """(…) distances between (…, 2) places."""
     return (a - b).square().sum(-1).sqrt()

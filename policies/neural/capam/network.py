@@ -1,4 +1,4 @@
-"""The whole network: encoder once a mission, then context and decoder at each decision."""
+"""The whole network: the encoder once per mission, then context and decoder at each decision."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from mrta_zoo.policies.neural.capam.node_features import NODE_FEATURES, node_fea
 
 @dataclass(frozen=True, slots=True)
 class Encoding:
-    """What a network knows of a mission's tasks; stays the same while it lasts.
+    """A network's encoding of a mission's tasks, the same for the whole mission.
 
     Attributes:
         tasks: the tasks.
@@ -37,7 +37,7 @@ class Encoding:
 
 
 class AllocationNetwork(nn.Module):
-    """Scores the tasks for the robot to act. One set of weights serves every robot, any number of tasks and robots.
+    """Scores the tasks for the acting robot. One set of weights serves every robot, any number of tasks and robots.
 
     With the default configuration this is CapAM; with ``encoder="attention"`` the paper's AM-RL; with
     ``decoder="candidates"`` CapAM+.
@@ -62,13 +62,13 @@ class AllocationNetwork(nn.Module):
             self.decoder = CandidateDecoder(h, config.heads, config.decision_layers)
 
     def encode(self, tasks: Tasks) -> Encoding:
-        """Embed the tasks; once a mission."""
+        """Embed the tasks; once per mission."""
         embeddings = self.encoder(
             node_features(tasks, self.config.node_features), tasks.exists, graph_properties(tasks)
         )
         shape = (*tasks.exists.shape, self.config.embedding)
         of_shape("encoder", self.config.encoder, embeddings, shape, tasks.exists.device)
-        if embeddings.dtype not in (torch.float16, torch.bfloat16):  # of which autocast takes care
+        if embeddings.dtype not in (torch.float16, torch.bfloat16):  # those are left to autocast
             embeddings = embeddings.float()
         if isinstance(self.decoder, AttentionDecoder):
             return Encoding(tasks, keys=self.decoder.keys(embeddings))
@@ -90,7 +90,7 @@ class AllocationNetwork(nn.Module):
             )
 
     def forward(self, encoding: Encoding, states: DecisionStates, features: Candidates | None = None) -> Tensor:
-        """Log-probabilities of choosing each task: (S, G, N); −inf where the mask forbids, or no candidate is.
+        """Log-probabilities of choosing each task: (S, G, N); −inf if masked, or not a candidate.
 
         Where a mission is over (nothing may be chosen) they are uniform, so that no NaN arises.
 

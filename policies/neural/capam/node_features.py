@@ -1,4 +1,4 @@
-"""What the encoders know of each task. ``@NODE_FEATURES.register("name")`` adds a feature of your own."""
+"""Node features: what encoders know of each task. ``@NODE_FEATURES.register("name")`` adds a feature of your own."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from mrta_zoo.policies.neural.capam.inputs import USUAL_CROSSINGS, Tasks
 from mrta_zoo.policies.neural.capam.named import Named, of_shape
 
 NodeFeature = Callable[[Tasks], Tensor]
-"""(S, N) numbers, one a task; best about in [0, 1]."""
+"""(S, N) numbers, one per task; best roughly in [0, 1]."""
 
 NODE_FEATURES: Named[NodeFeature] = Named(
     "node_features",

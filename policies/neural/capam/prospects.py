@@ -1,4 +1,4 @@
-"""What a robot could do next, and after that, where a task would take it: how much there is within reach."""
+"""Prospects of each candidate: how many tasks would be within reach after it."""
 
 from __future__ import annotations
 
@@ -6,27 +6,26 @@ import torch
 from torch import Tensor
 
 RANGES = (0.1, 0.3)
-"""Durations, in crossings, at which a task counts 1/e of one at no distance."""
+"""Durations, in crossings, at which a task counts 1/e as much as one that takes no time."""
 PROSPECT_COLUMNS = ("near", "far", "near_first", "far_first")
 
 
 def prospects(travel: Tensor, work: Tensor, start: Tensor, left: Tensor, others: Tensor, rival: Tensor) -> Tensor:
     """How many tasks lie within reach after each of some candidates, the nearer the more they count.
 
-    Those count that the robot could finish in time if it went there next: e^(−duration / range) each, with the
-    durations of travel and work, for each range of `RANGES`; and once more only those where none of some peers can be
-    earlier.
+    A task counts e^(−duration / range), its duration being travel and work, if the robot could finish it in time by
+    going there next; for each range of `RANGES`. The same counts follow without tasks that a peer could reach earlier.
 
     Args:
         travel: (…, K, N) from each candidate to each task; all times in crossings.
         work: (…, N) what each task takes.
         start: (…, K) from now until each candidate would be done.
         left: (…, N) from now to each deadline.
-        others: (…, K, N) bool, what else than the candidate may be chosen now.
-        rival: (…, N) from now until the first of those peers could be at each task; infinite without peers.
+        others: (…, K, N) bool, the tasks other than the candidate that may be chosen now.
+        rival: (…, N) from now until the first of the peers could be at each task; infinite without peers.
 
     Returns:
-        (…, K, len(PROSPECT_COLUMNS)) thirds of the logarithm of one more than these counts.
+        (…, K, len(PROSPECT_COLUMNS)) ln(1 + count) / 3 for each of these counts.
     """
     arrival = start[..., None] + travel
     possible = others & (arrival + work[..., None, :] <= left[..., None, :])

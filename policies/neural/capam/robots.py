@@ -1,4 +1,4 @@
-"""The robots that matter to a decision: the one to act, and the peers nearest to it, with their times."""
+"""The robots that matter to a decision: the acting one and its nearest peers, with their times."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FAR = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Robots:
-    """The R robots that matter to a decision: the one to act, then the peers that could be where it is first.
+    """The R robots that matter to a decision: the acting one, then the peers that could be at its place first.
 
     Attributes:
         xy: (S, G, R, 2) where each is, or is heading for, in L.
@@ -41,12 +41,12 @@ class Robots:
 
     @classmethod
     def of(cls, tasks: Tasks, states: DecisionStates, most_peers: int) -> Robots:
-        """The robot to act and at most so many peers, in each of (S, G) states."""
+        """The acting robot and at most `most_peers` peers, in each of (S, G) states."""
         horizon = tasks.horizon[:, None, None]
         wait = (states.ready * horizon - states.elapsed[..., None] * horizon).clamp(min=0)
         peers, ego_xy = states.peers, states.of_ego(states.xy)
         reach = wait + distance(states.xy, ego_xy[..., None, :]) / states.speed
-        # Ties, frequent on whole coordinates, are broken by what robots are, not how numbered.
+        # Ties, frequent on whole coordinates, are broken by the robots' values, not their order.
         kind = 2.7 * states.xy[..., 0] + 1.9 * states.xy[..., 1] + states.capacity + 1.3 * states.speed
         key = (reach.double() + 1e-6 * kind).masked_fill(~peers, torch.inf)
         count = min(most_peers, key.shape[-1] - 1)
@@ -57,7 +57,7 @@ class Robots:
             return values.gather(2, chosen)
 
         valid = torch.cat((torch.ones_like(peers[..., :1]), peers.gather(2, nearest)), -1)
-        # Padding has speed and capacity 0 in observations; what is divided by them would not be finite.
+        # Padding has speed and capacity 0 in observations; quotients by them would not be finite.
         capacity, speed = (of_robot(of).masked_fill(~valid, 1.0) for of in (states.capacity, states.speed))
         xy = torch.stack((of_robot(states.xy[..., 0]), of_robot(states.xy[..., 1])), -1)
         return cls(
@@ -72,7 +72,7 @@ class Robots:
         )
 
     def first_peer(self, places: Tensor) -> Tensor:
-        """(S, G, N) from now until the first of these peers could be at each of (S, N, 2) places; infinite without."""
+        """(S, G, N) from now until the first of these peers could be at each of (S, N, 2) places, else infinite."""
         if self.wait.shape[-1] == 1:
             return torch.full((*self.wait.shape[:2], places.shape[1]), torch.inf, device=places.device)
         way = distance(self.xy[..., 1:, None, :], places[:, None, None]) * self.pace[..., 1:, None]

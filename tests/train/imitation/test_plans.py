@@ -68,7 +68,7 @@ def dies(config: object, first: int, folder: Path) -> None:
 @pytest.mark.skipif(os.name != "posix", reason="sends POSIX signals")
 def test_a_process_that_dies_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(plans, "make_shard", dies)
-    with pytest.raises(ConfigError, match="a process that was at work was killed"):
+    with pytest.raises(ConfigError, match="a worker process was killed"):
         plans.make_plans(PRESETS["capam-plus"], tmp_path / "plans")
 
 
