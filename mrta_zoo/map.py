@@ -85,7 +85,7 @@ def _is_unsaid(pair: Any) -> bool:
 def _pair(value: Any, attribute: str, least: float, expected: str) -> Pair:
     try:
         x, y = (float(each) + 0.0 for each in value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):  # a whole number too large for a float
         x = y = math.nan
     if not (least <= x <= LARGEST and least <= y <= LARGEST):
         raise ScenarioError(f"{attribute} is {value!r}; expected {expected}")

@@ -187,7 +187,7 @@ def quantities_of(who: Who) -> tuple[Quantity, ...]:
 def _frozen(values: npt.ArrayLike, attribute: str) -> FloatArray:
     try:
         array = np.array(values, dtype=np.float64, order="C")
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise ScenarioError(f"{attribute} must hold numbers: {error}") from None
     array += 0.0  # turns -0.0 into 0.0, so that equal scenarios have equal bytes
     array.setflags(write=False)

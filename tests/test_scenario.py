@@ -50,6 +50,8 @@ def test_good() -> None:
         ({"speed": [1, 1, 1]}, "speed has shape (3,)"),
         ({"capacity": ["a", "b"]}, "capacity must hold numbers"),
         ({"task_xy": [[1, 2], [3]]}, "task_xy must hold numbers"),
+        ({"deadline": [10**400, 1]}, "deadline must hold numbers"),
+        ({"map_size": (10**400, 1)}, "expected two finite numbers > 0"),
         ({"deadline": [None, 1, 2]}, "task 0 has deadline nan; expected a finite number > 0"),
         ({"deadline": [10, 0, 30]}, "task 1 has deadline 0; expected a finite number > 0"),
         ({"deadline": [10, np.nan, 30]}, "task 1 has deadline nan; expected"),
