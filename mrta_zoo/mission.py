@@ -11,11 +11,11 @@ import numpy.typing as npt
 from mrta_zoo.digits import full
 from mrta_zoo.errors import ActionError
 from mrta_zoo.rules import (
+    MASK_RULES,
     MaskReason,
     MaskRule,
     Status,
     check_mask_rule,
-    may_choose,
     next_event,
     task_cost,
     travel_time,
@@ -29,7 +29,7 @@ ReasonArray = npt.NDArray[np.int8]
 # As plain integers, which are faster to look up and compare than members of an enumeration.
 _ACTIVE, _ASSIGNED, _COMPLETED, _MISSED = (int(status) for status in Status)
 # Arrays without dimensions, which NumPy compares with others in half the time that integers take.
-_CHOOSABLE, _TAKEN, _DEADLINE_PASSED, _TOO_LATE = (np.array(reason, np.int8) for reason in list(MaskReason)[:4])
+_CHOOSABLE, _TAKEN, _DEADLINE_PASSED = (np.array(reason, np.int8) for reason in list(MaskReason)[:3])
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +87,7 @@ class Mission:
         self.reasons: ReasonArray = np.full((m, n), _CHOOSABLE, dtype=np.int8)
         order = np.argsort(scenario.deadline, kind="stable")
         self._by_deadline = list(zip(scenario.deadline[order].tolist(), order.tolist(), strict=True))
+        self._refused = np.array(MASK_RULES[mask_rule].reason, np.int8)
         self._passed = 0  # how many of `_by_deadline` lie before the clock
         self._x, self._y = np.ascontiguousarray(scenario.task_xy.T)
         self._work: FloatArray = scenario.workload[None, :] / scenario.capacity[:, None]
@@ -100,12 +101,12 @@ class Mission:
         return self.actor < 0
 
     def mask(self, robot: int) -> BoolArray:
-        """(N,) what `robot` may choose when it is next free, as far as is known now."""
-        mask: BoolArray = self.reasons[robot] == _CHOOSABLE
+        """(N,) what `robot` may choose when it is next free, as far as it knows now."""
+        mask: BoolArray = self.known(robot).reasons[robot] == _CHOOSABLE
         return mask
 
     def known(self, robot: int) -> Mission:
-        """The mission as `robot` knows it, today all of it; observations and advice are made from this."""
+        """The mission as `robot` knows it, today all of it; masks, observations and advice are made from this."""
         return self
 
     def free(self) -> list[int]:
@@ -200,9 +201,9 @@ class Mission:
         self.finish_if[robot] = finish
         reasons = self.reasons[robot]
         taken = reasons == _TAKEN
-        reasons.fill(_TOO_LATE)
+        reasons.fill(self._refused)
         np.putmask(reasons, scenario.deadline < ready, _DEADLINE_PASSED)
-        np.putmask(reasons, may_choose(self.mask_rule, finish, ready, scenario.deadline), _CHOOSABLE)
+        np.putmask(reasons, MASK_RULES[self.mask_rule].allows(finish, ready, scenario.deadline), _CHOOSABLE)
         np.putmask(reasons, taken, _TAKEN)
 
     def _finish_until(self, time: float) -> list[Finished]:
@@ -242,8 +243,8 @@ class Mission:
             )
         if not 0 <= task < tasks:
             raise ActionError(f"robot {name(robot)} chose task {task}; tasks are numbered 0 to {tasks - 1}")
-        if self.reasons[robot, task] != _CHOOSABLE:
-            reason = MaskReason(self.reasons[robot, task]).name.lower().replace("_", " ")
+        if (why := self.known(robot).reasons[robot, task]) != _CHOOSABLE:
+            reason = MaskReason(why).name.lower().replace("_", " ")
             choices = np.flatnonzero(self.mask(robot)).tolist()
             shown = ", ".join(map(named, choices[:10])) + (", …" if len(choices) > 10 else "")
             raise ActionError(

@@ -34,6 +34,20 @@ class VisitTimes(NamedTuple):
     finishes: Any
 
 
+class MaskReason(IntEnum):
+    """Why a robot may not choose a task."""
+
+    CHOOSABLE = 0
+    TAKEN = 1
+    DEADLINE_PASSED = 2
+    TOO_LATE = 3
+    """This robot could not finish it by its deadline."""
+    NO_TASK = 4
+    """Padding: the scenario has fewer tasks than the environment has room for."""
+    RULED_OUT = 5
+    """The mask rule refuses it for a reason of its own."""
+
+
 class MaskFormula(NamedTuple):
     """A mask rule.
 
@@ -41,15 +55,19 @@ class MaskFormula(NamedTuple):
         allows: ``allows(finish, ready, deadline)``: whether a robot that is free at `ready` may choose a task that it
             would finish at `finish`, if nobody has taken it.
         help: which tasks these are.
+        reason: why it refuses others, of those whose deadline has not passed.
     """
 
     allows: Callable[[Any, Any, Any], Any]
     help: str
+    reason: MaskReason = MaskReason.RULED_OUT
 
 
 MASK_RULES: dict[MaskRule, MaskFormula] = {
     "feasible": MaskFormula(
-        lambda finish, ready, deadline: finish <= deadline, "those that this robot can finish by their deadline"
+        lambda finish, ready, deadline: finish <= deadline,
+        "those that this robot can finish by their deadline",
+        MaskReason.TOO_LATE,
     ),
     "active": MaskFormula(
         lambda finish, ready, deadline: (ready <= deadline) & (finish == finish),  # which only broadcasts to (..., N)
@@ -74,18 +92,6 @@ class Status(IntEnum):
     """Finished by its deadline."""
     MISSED = 3
     """Finished late, or its deadline passed before anyone took it."""
-
-
-class MaskReason(IntEnum):
-    """Why a robot may not choose a task."""
-
-    CHOOSABLE = 0
-    TAKEN = 1
-    DEADLINE_PASSED = 2
-    TOO_LATE = 3
-    """This robot could not finish it by its deadline."""
-    NO_TASK = 4
-    """Padding: the scenario has fewer tasks than the environment has room for."""
 
 
 # Arrays are NumPy or torch, hence `Any`; shapes only need to broadcast.

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import re
+from typing import Any
 
 import numpy as np
 import pytest
 
 from mrta_zoo.errors import ActionError, ConfigError
 from mrta_zoo.mission import Finished, Mission
-from mrta_zoo.rules import MaskReason, MaskRule, Status
+from mrta_zoo.rules import MASK_RULES, MaskFormula, MaskReason, MaskRule, Status
 from mrta_zoo.scenario import Scenario
 
 ACTIVE, ASSIGNED, COMPLETED, MISSED = Status
@@ -194,6 +195,15 @@ def test_why_a_robot_may_not_choose() -> None:
     assert mission.reasons[0].tolist() == [taken, passed, taken]
     assert passed is MaskReason.DEADLINE_PASSED
     assert too_late is MaskReason.TOO_LATE
+
+
+def test_a_new_rule_calls_nothing_late_that_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    def allows(finish: Any, ready: Any, deadline: Any) -> Any:
+        return finish + 50 <= deadline
+
+    monkeypatch.setitem(MASK_RULES, "to spare", MaskFormula(allows, "those done 50 before their deadline"))
+    case = scenario([(1, 0, 51.0, 0), (1, 0, 50.9, 0)])  # both are finished at 1
+    assert Mission(case, "to spare").reasons[0].tolist() == [MaskReason.CHOOSABLE, MaskReason.RULED_OUT]  # type: ignore[arg-type]
 
 
 def test_retirement_in_order_of_time() -> None:

@@ -87,5 +87,5 @@ def test_codes_are_fixed() -> None:
     # They are written to observations, infos and files.
     assert [status.name for status in sorted(Status)] == ["ACTIVE", "ASSIGNED", "COMPLETED", "MISSED"]
     assert [reason.name for reason in sorted(MaskReason)] == [
-        "CHOOSABLE", "TAKEN", "DEADLINE_PASSED", "TOO_LATE", "NO_TASK",
+        "CHOOSABLE", "TAKEN", "DEADLINE_PASSED", "TOO_LATE", "NO_TASK", "RULED_OUT",
     ]  # fmt: skip

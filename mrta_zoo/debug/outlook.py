@@ -17,7 +17,10 @@ SortKey = Literal["rank", "distance", "finish", "slack", "deadline", "task"]
 """How tasks are sorted: those that may be chosen first, then by the policy's probability or else by finish ("rank"), or
 by a column. Only "task" does not put those that may be chosen first."""
 
-_AFTER = (MaskReason.CHOOSABLE, MaskReason.TOO_LATE, MaskReason.TAKEN, MaskReason.DEADLINE_PASSED)
+_AFTER = (
+    MaskReason.CHOOSABLE, MaskReason.TOO_LATE, MaskReason.RULED_OUT, MaskReason.TAKEN, MaskReason.DEADLINE_PASSED,
+    MaskReason.NO_TASK,
+)  # fmt: skip
 _REASONS, _STATUSES = list(MaskReason), list(Status)
 
 
@@ -75,6 +78,8 @@ class Prospect:
             return "deadline passed"
         if self.reason == MaskReason.TOO_LATE:
             return f"too late by {time(-self.slack)}" if self.slack < 0 else "too late"
+        if self.reason == MaskReason.RULED_OUT:
+            return "ruled out"
         late = f"late by {time(-self.slack)}; " if self.slack < 0 else ""
         if self.rival is None or self.rival_finish is None:
             return late + "nobody else in time"

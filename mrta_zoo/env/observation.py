@@ -142,9 +142,8 @@ class Observer:
 
     def observe(self, mission: Mission, robot: int) -> Observation:
         """What `robot` sees now, as fresh arrays. The mask is what it may choose when next free."""
-        known = mission.known(robot)
-        self.look(known)
-        return {"observation": self.tables(robot), "action_mask": self.mask(known, robot)}
+        self.look(mission.known(robot))
+        return {"observation": self.tables(robot), "action_mask": self.mask(mission, robot)}
 
     def look(self, mission: Mission) -> None:
         """Take in the mission as it stands. `flat`, `tables` and `state` show what was last looked at.

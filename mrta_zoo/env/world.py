@@ -107,6 +107,9 @@ class World:
         mission = self.mission
         robots, tasks = mission.reasons.shape
         self._reasons[:robots, :tasks] = mission.reasons
+        for robot, known in enumerate(map(mission.known, range(robots))):
+            if known is not mission:
+                self._reasons[robot, :tasks] = known.reasons[robot]
         reasons = self._reasons.copy()
         masks = (reasons == _CHOOSABLE).view(np.int8)
         time, completed = mission.time, self.completed_by_now
@@ -128,9 +131,10 @@ class World:
 
     def mask(self, robot: int) -> npt.NDArray[np.int8]:
         """(max_tasks,) what `robot` may choose when next free; all 0 for one the scenario does not have."""
-        mask, reasons = np.zeros(self.max_tasks, dtype=np.int8), self.mission.reasons
-        if robot < len(reasons):
-            mask[: reasons.shape[1]] = reasons[robot] == _CHOOSABLE
+        mask, mission = np.zeros(self.max_tasks, dtype=np.int8), self.mission
+        if robot < len(mission.ready):
+            reasons = mission.known(robot).reasons[robot]
+            mask[: len(reasons)] = reasons == _CHOOSABLE
         return mask
 
     def seen_by(self, robot: int, mask: npt.NDArray[np.int8]) -> Any:

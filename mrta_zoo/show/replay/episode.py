@@ -189,14 +189,14 @@ def episode_of(trace: Trace) -> EpisodeJson:
 
 
 def _decision(mission: Mission, choice: Choice) -> DecisionJson:
-    reasons = mission.reasons[mission.actor]
+    reasons = mission.known(mission.actor).reasons[mission.actor]
     open_to_it = int((reasons == MaskReason.CHOOSABLE).sum())
     return DecisionJson(
         time=_short(mission.time),
         robot=mission.actor,
         task=choice.task,
         advice=choice.advice,
-        reasons=np.bincount(reasons, minlength=4)[:4].tolist(),
+        reasons=np.bincount(reasons, minlength=4).tolist(),
         candidates=[
             CandidateJson(
                 each.task,

@@ -1,6 +1,6 @@
 "use strict";
 // The sides of the page, and the moment that they show.
-const REASONS = ["to choose from", "taken", "deadline passed", "too late"]; // by rules.MaskReason
+const REASONS = ["to choose from", "taken", "deadline passed", "too late", "not there", "ruled out"]; // by rules.MaskReason
 const GAP = 14, NAMES = 0.4; // around names and notes, in pixels; what names get of the room for both at least, as a share
 const WHOLE_PLAY = 40; // seconds that an episode takes at speed 1
 
