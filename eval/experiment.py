@@ -20,7 +20,7 @@ from mrta_zoo.eval.manifest import Manifest
 from mrta_zoo.eval.rows_file import RowsFile, RowType
 from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.io.paths import make_folder
-from mrta_zoo.io.source import read_text, write_text
+from mrta_zoo.io.text_files import read_text, write_text
 from mrta_zoo.show.terminal.console import progress_bar, say
 from mrta_zoo.wording import composed
 

@@ -16,7 +16,7 @@ import tyro
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.destination import check_outputs
 from mrta_zoo.io.paths import as_spelt
-from mrta_zoo.io.source import check_name, read_text
+from mrta_zoo.io.text_files import check_name, read_text
 from mrta_zoo.show.axes import plain
 from mrta_zoo.show.figure import LiteralFigure, check_format, save_picture
 

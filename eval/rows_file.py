@@ -14,8 +14,8 @@ import msgspec
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.records import write_records
-from mrta_zoo.io.source import read_text, write_text
 from mrta_zoo.io.table import columns_in_use
+from mrta_zoo.io.text_files import read_text, write_text
 from mrta_zoo.wording import composed, counted
 
 if TYPE_CHECKING:

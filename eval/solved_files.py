@@ -10,7 +10,7 @@ from pathlib import Path
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.runner import Solved
 from mrta_zoo.io import write_plan
-from mrta_zoo.io.source import write_text
+from mrta_zoo.io.text_files import write_text
 from mrta_zoo.left_out import left_out
 
 SCHEDULE_COLUMNS = (

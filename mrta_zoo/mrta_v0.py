@@ -94,9 +94,8 @@ All numeric, the same keys for every agent at reset and after every step:
 - ``completed``: number of tasks completed so far by all robots;
 - ``action_mask``: (max_tasks,) int8, as above, for every agent;
 - ``mask_reason``: (max_tasks,) int8, why a task is masked, a `mrta_zoo.rules.MaskReason`: 0 choosable, 1 taken,
-  2 deadline passed, 3 too late for this robot, 4 padding (all tasks, if there is no robot), 5 refused by a mask rule of
-  your own. Judged at the time the
-  robot is next free.
+  2 deadline passed, 3 too late for this robot, 4 padding (all tasks, if there is no robot), 5 ruled out by a
+  mask rule of your own. Judged at the time the robot is next free.
 
 Arguments
 ---------

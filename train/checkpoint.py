@@ -27,7 +27,7 @@ from mrta_zoo.io.dataclass_json import read_json, write_json
 from mrta_zoo.io.lock import lock_folder
 from mrta_zoo.io.paths import check_no_url, make_folder
 from mrta_zoo.io.records import write_records
-from mrta_zoo.io.source import check_name
+from mrta_zoo.io.text_files import check_name
 from mrta_zoo.policies.neural.weights import PolicyInfo, load_state, read_tensors, save_policy, write_tensors
 from mrta_zoo.train.adam_state import adam_tensors, restore_adam
 from mrta_zoo.train.config import TrainConfig

@@ -13,7 +13,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.eval.report.figure_style import save_figure
 from mrta_zoo.eval.report.parts import Picture, Report, Table
 from mrta_zoo.io.outputs import Outputs
-from mrta_zoo.io.source import write_text
+from mrta_zoo.io.text_files import write_text
 from mrta_zoo.show.terminal.console import results_console, say
 
 MARKDOWN = re.compile(r"([\\`*_{}\[\]|~$]|^#|^[+-](?=[\s-]|$)|:(?=[\w+-]+:))")

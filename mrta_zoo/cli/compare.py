@@ -18,6 +18,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.io import read_scenario
 from mrta_zoo.io.destination import check_outputs
 from mrta_zoo.io.files import agent_file
+from mrta_zoo.io.formats import AGENT_FILE, SCENARIO_FILE
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.policies.registry import method_names
@@ -38,10 +39,14 @@ class Compare:
       mrta-zoo compare mission.json --methods plan.json,other.json
     """
 
-    scenario: Annotated[Positional[Path], arg(metavar="SCENARIO")]
-    """The mission: a TAPTC task file, or a scenario in .json or .csv."""
-    agents: Annotated[Path | None, optional("AGENTFILE")] = None
-    """The robots: a TAPTC agent file, or .csv. Without it they are in SCENARIO or, for TAPTC, in agent/ beside it."""
+    scenario: Annotated[Positional[Path], arg(metavar="SCENARIO", help=f"The mission: {SCENARIO_FILE}.")]
+    agents: Annotated[
+        Path | None,
+        optional(
+            "AGENTFILE",
+            help=f"The robots: {AGENT_FILE}. Without it they are in SCENARIO or, for TAPTC, in agent/ beside it.",
+        ),
+    ] = None
     methods: Annotated[
         str,
         arg(

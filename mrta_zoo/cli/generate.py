@@ -14,7 +14,8 @@ from mrta_zoo.bounds import check_seed
 from mrta_zoo.cli.flags import optional, takes_flags
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import make_generator
-from mrta_zoo.io.case_folder import CaseFormat, write_case_folder
+from mrta_zoo.io.case_folder import write_case_folder
+from mrta_zoo.io.formats import FormatName
 from mrta_zoo.show.terminal.console import results_console, say
 from mrta_zoo.wording import counted
 
@@ -40,7 +41,7 @@ class Generate:
     """Number of scenarios."""
     seed: int = 0
     """Random seed. The same seed and bounds give the same scenarios, and a higher --count only adds to them."""
-    format: CaseFormat = "taptc"
+    format: FormatName = "taptc"
     """Format of the files. TAPTC files hold no speeds."""
     tasks: Bounds = None
     """Number of tasks; 100 by default."""

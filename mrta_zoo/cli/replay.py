@@ -15,6 +15,7 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.io import read_scenario, read_trace
 from mrta_zoo.io.destination import check_outputs
 from mrta_zoo.io.files import agent_file
+from mrta_zoo.io.formats import AGENT_FILE, SCENARIO_FILE
 from mrta_zoo.io.json_format import json_kind
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.policies.cpu_threads import cpu_threads
@@ -39,14 +40,22 @@ class Replay:
       mrta-zoo replay session.json --policy eils --budget 1 --out both.html
     """
 
-    source: Annotated[Positional[Path], arg(metavar="SCENARIO|PLAN.json|TRACE.json")]
-    """A mission (a TAPTC task file, or a scenario in .json or .csv), or an episode (a trace, or a plan together with
-    --scenario)."""
+    source: Annotated[
+        Positional[Path],
+        arg(
+            metavar="SCENARIO|PLAN.json|TRACE.json",
+            help=f"A mission ({SCENARIO_FILE}), or an episode (a trace, or a plan together with --scenario).",
+        ),
+    ]
     scenario: Annotated[Path | None, optional("SCENARIO")] = None
     """The mission that the plan was made for."""
-    agents: Annotated[Path | None, optional("AGENTFILE")] = None
-    """The robots: a TAPTC agent file, or .csv. Without it they are with the tasks or, for TAPTC, in agent/ beside
-    them."""
+    agents: Annotated[
+        Path | None,
+        optional(
+            "AGENTFILE",
+            help=f"The robots: {AGENT_FILE}. Without it they are with the tasks or, for TAPTC, in agent/ beside them.",
+        ),
+    ] = None
     policy: Annotated[
         str | None,
         arg(

@@ -18,6 +18,7 @@ from mrta_zoo.eval.solved_files import write_schedule, write_solved
 from mrta_zoo.io import read_scenario
 from mrta_zoo.io.destination import check_outputs
 from mrta_zoo.io.files import agent_file
+from mrta_zoo.io.formats import AGENT_FILE, SCENARIO_FILE
 from mrta_zoo.io.outputs import Outputs
 from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.policies.default_method import BEST_FIRST, default_method
@@ -38,10 +39,14 @@ class Solve:
       mrta-zoo solve mission.json --budget 2 --out plan.json
     """
 
-    taskfile: Annotated[Positional[Path], arg(metavar="TASKFILE")]
-    """The mission: a TAPTC task file, or a scenario in .json or .csv."""
-    agents: Annotated[Path | None, optional("AGENTFILE")] = None
-    """The robots: a TAPTC agent file, or .csv. Without it they are in TASKFILE or, for TAPTC, in agent/ beside it."""
+    taskfile: Annotated[Positional[Path], arg(metavar="TASKFILE", help=f"The mission: {SCENARIO_FILE}.")]
+    agents: Annotated[
+        Path | None,
+        optional(
+            "AGENTFILE",
+            help=f"The robots: {AGENT_FILE}. Without it they are in TASKFILE or, for TAPTC, in agent/ beside it.",
+        ),
+    ] = None
     method: Annotated[
         str | None,
         arg(

@@ -24,8 +24,9 @@ from mrta_zoo.errors import ConfigError
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.io import read_scenario, read_trace
 from mrta_zoo.io.destination import check_outputs
+from mrta_zoo.io.formats import AGENT_FILE, SCENARIO_FILE
 from mrta_zoo.io.outputs import Outputs
-from mrta_zoo.io.source import decode, read_text
+from mrta_zoo.io.text_files import decode, read_text
 from mrta_zoo.policies.cpu_threads import cpu_threads
 from mrta_zoo.policies.registry import method_names
 from mrta_zoo.scenario import Scenario
@@ -51,11 +52,21 @@ class Step:
       mrta-zoo step --seed 3 --policy nearest --script commands.txt
     """
 
-    scenario: Annotated[Positional[Path | None], arg(metavar="[SCENARIO]", help_behavior_hint="")] = None
-    """The mission: a TAPTC task file, or a scenario in .json or .csv. Without it, one like the published cases is drawn
-    with --seed."""
-    agents: Annotated[Path | None, optional("AGENTFILE")] = None
-    """The robots: a TAPTC agent file, or .csv. Without it they are in SCENARIO or, for TAPTC, in agent/ beside it."""
+    scenario: Annotated[
+        Positional[Path | None],
+        arg(
+            metavar="[SCENARIO]",
+            help_behavior_hint="",
+            help=f"The mission: {SCENARIO_FILE}. Without it, one like the published cases is drawn with --seed.",
+        ),
+    ] = None
+    agents: Annotated[
+        Path | None,
+        optional(
+            "AGENTFILE",
+            help=f"The robots: {AGENT_FILE}. Without it they are in SCENARIO or, for TAPTC, in agent/ beside it.",
+        ),
+    ] = None
     policy: Annotated[
         str | None,
         arg(

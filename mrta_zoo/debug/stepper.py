@@ -10,7 +10,7 @@ from mrta_zoo.debug.outlook import Prospect, SortKey, outlook, ranked
 from mrta_zoo.debug.recorder import overrule, recorded
 from mrta_zoo.errors import ActionError, MrtaError
 from mrta_zoo.io import read_trace, write_trace
-from mrta_zoo.io.source import StrPath
+from mrta_zoo.io.text_files import StrPath
 from mrta_zoo.mission import Mission
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.protocol import Policy, Solver

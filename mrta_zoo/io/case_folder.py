@@ -8,17 +8,14 @@ import shutil
 from collections.abc import Iterable
 from contextlib import suppress
 from pathlib import Path
-from typing import Literal, get_args
 
 from mrta_zoo.errors import ConfigError, ScenarioError
-from mrta_zoo.io import write_scenario, write_taptc
+from mrta_zoo.io.formats import FORMATS, FormatName
 from mrta_zoo.io.paths import check_no_url
 from mrta_zoo.scenario import Scenario
 
-CaseFormat = Literal["taptc", "json", "csv"]
 
-
-def write_case_folder(scenarios: Iterable[Scenario], folder: Path, file_format: CaseFormat) -> None:
+def write_case_folder(scenarios: Iterable[Scenario], folder: Path, file_format: FormatName) -> None:
     """Write scenarios as a folder that `io.read_cases` reads; all of them or none.
 
     TAPTC task files go to ``group1/NAME.txt`` and their agent files to ``agent/NAME.txt``, JSON and CSV files into the
@@ -33,8 +30,9 @@ def write_case_folder(scenarios: Iterable[Scenario], folder: Path, file_format: 
         ConfigError: if the folder is not empty or cannot be made, or there is no such format.
         ScenarioError: if the format cannot express a scenario.
     """
-    if file_format not in get_args(CaseFormat):
-        raise ConfigError(f"format is {file_format!r}; expected one of {', '.join(get_args(CaseFormat))}")
+    suffixes = {form.name: suffix for suffix, form in FORMATS.items()}
+    if file_format not in suffixes:
+        raise ConfigError(f"format is {file_format!r}; expected one of {', '.join(suffixes)}")
     check_no_url(folder, ConfigError)
     try:
         if folder.is_dir() and any(folder.iterdir()):
@@ -49,7 +47,7 @@ def write_case_folder(scenarios: Iterable[Scenario], folder: Path, file_format: 
         raise ConfigError(f"{folder} cannot be made: {(error.strerror or str(error)).lower()}") from None
     try:
         for scenario in scenarios:
-            _write_case(scenario, partial, file_format)
+            _write_case(scenario, partial, suffixes[file_format])
         for path in sorted(partial.iterdir()):
             path.replace(final / path.name)
         new = False
@@ -64,11 +62,7 @@ def write_case_folder(scenarios: Iterable[Scenario], folder: Path, file_format: 
                 final.rmdir()
 
 
-def _write_case(scenario: Scenario, folder: Path, file_format: CaseFormat) -> None:
-    if file_format != "taptc":
-        write_scenario(scenario, folder / f"{scenario.name}.{file_format}")
-        return
-    for part in ("group1", "agent"):
-        (folder / part).mkdir(exist_ok=True)
-    file = f"{scenario.name}.txt"
-    write_taptc(scenario, folder / "group1" / file, folder / "agent" / file)
+def _write_case(scenario: Scenario, folder: Path, suffix: str) -> None:
+    place = folder / "group1" if FORMATS[suffix].grouped else folder
+    place.mkdir(exist_ok=True)
+    FORMATS[suffix].write(scenario, place / f"{scenario.name}{suffix}", folder / "agent")

@@ -11,12 +11,11 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.io.csv_format import is_other_csv
 from mrta_zoo.io.files import read_scenario
-from mrta_zoo.io.json_format import is_other_json
+from mrta_zoo.io.formats import FORMATS, format_of
 from mrta_zoo.io.paths import check_no_url, suffix_of
-from mrta_zoo.io.source import StrPath, check_name, count, shown
 from mrta_zoo.io.table import read_table
+from mrta_zoo.io.text_files import StrPath, check_name, count, shown
 from mrta_zoo.scenario import Scenario
 from mrta_zoo.wording import composed
 
@@ -97,12 +96,10 @@ def _read_scenarios(paths: Iterable[Path]) -> dict[str, Scenario]:
     sources: dict[str, Path] = {}
     scenarios: dict[str, Scenario] = {}
     for path in paths:
-        if is_other_json(path):
-            continue
         try:
             scenario = read_scenario(path)
         except ScenarioError:
-            if is_other_csv(path):
+            if format_of(path).is_other(path):
                 continue
             raise
         if scenario.name in sources:
@@ -119,9 +116,10 @@ def _files_of_cases(root: Path) -> list[Path]:
     """Files that may hold a case or the reference table, without hidden ones."""
     entries = sorted(root.iterdir())
     groups = [entry for entry in entries if entry.name.lower().startswith("group") and os.path.isdir(entry)]
-    found = [path for group in groups for path in sorted(group.iterdir()) if suffix_of(path) == ".txt"]
-    for suffix in (".json", ".csv"):
-        found += [path for path in entries if suffix_of(path) == suffix]
+    in_groups = [path for group in groups for path in sorted(group.iterdir())]
+    found: list[Path] = []
+    for suffix, form in sorted(FORMATS.items(), key=lambda row: not row[1].grouped):
+        found += [path for path in (in_groups if form.grouped else entries) if suffix_of(path) == suffix]
     found = [path for path in found if not path.name.startswith(".")]
     # Broken links are left to the reader, which reports them; a pipe would keep it waiting.
     return [path for path in found if os.path.isfile(path) or not os.path.exists(path)]

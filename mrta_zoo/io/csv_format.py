@@ -19,8 +19,8 @@ from typing import get_args
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.parts import MapRow, Part, Row, in_id_order, place_in_file, robot_rows, task_rows
 from mrta_zoo.io.paths import suffix_of
-from mrta_zoo.io.source import StrPath, number, shown, write_text
 from mrta_zoo.io.table import read_table
+from mrta_zoo.io.text_files import StrPath, number, shown, write_text
 from mrta_zoo.quantities import Quantity, Who
 from mrta_zoo.scenario import QUANTITIES, Scenario, quantities_of
 

@@ -12,7 +12,7 @@ import msgspec
 
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.atomic import replacing
-from mrta_zoo.io.source import read_text
+from mrta_zoo.io.text_files import read_text
 
 T = TypeVar("T")
 

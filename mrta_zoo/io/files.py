@@ -5,12 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.io.csv_format import read_csv_part, write_csv
-from mrta_zoo.io.json_format import read_json_part, write_json
+from mrta_zoo.io.formats import AGENT_FILE, FORMATS, format_of
 from mrta_zoo.io.parts import Part, assemble
 from mrta_zoo.io.paths import check_no_url, suffix_of
-from mrta_zoo.io.source import StrPath, shown
-from mrta_zoo.io.taptc import find_agent_file, read_agent_part, read_task_part, write_taptc
+from mrta_zoo.io.text_files import StrPath, shown
 from mrta_zoo.scenario import Scenario
 
 
@@ -25,22 +23,22 @@ def read_scenario(path: StrPath, agents: StrPath | None = None) -> Scenario:
     Raises:
         ScenarioError: one sentence that names the file and the line or field that is wrong.
     """
-    suffix = suffix_of(path)
-    if suffix == ".json":
-        return assemble(read_json_part(path), _agents(agents))
-    if suffix == ".csv":
-        return assemble(read_csv_part(path), _agents(agents))
-    return assemble(read_task_part(path), _agents(agents if agents is not None else find_agent_file(path)))
+    form = format_of(path)
+    part = form.read(path)
+    if agents is None and form.find_agents is not None:
+        agents = form.find_agents(path)
+    return assemble(part, None if agents is None else _agents(agents))
 
 
 def agent_file(path: StrPath, agents: StrPath | None = None) -> Path | None:
     """The file that `read_scenario` reads the robots from; None if it is the scenario's own, or cannot be found."""
     if agents is not None:
         return Path(agents)
-    if suffix_of(path) in (".json", ".csv"):
+    find_agents = format_of(path).find_agents
+    if find_agents is None:
         return None
     try:
-        return find_agent_file(path)
+        return find_agents(path)
     except ScenarioError:  # the reader has more to say: maybe there is no task file either
         return None
 
@@ -58,25 +56,14 @@ def write_scenario(scenario: Scenario, path: StrPath) -> None:
     check_no_url(path, ScenarioError)
     path = Path(path)
     suffix = suffix_of(path)
-    if suffix == ".json":
-        write_json(scenario, path)
-    elif suffix == ".csv":
-        write_csv(scenario, path)
-    elif suffix == ".txt":
-        agent_folder = path.parent / "agent"
-        try:
-            agent_folder.mkdir(exist_ok=True)
-        except OSError as problem:
-            raise ScenarioError(f"{agent_folder} cannot be made: {problem.strerror}; expected a folder") from None
-        write_taptc(scenario, path, agent_folder / path.name)
-    else:
-        raise ScenarioError(f"{path} has the suffix {shown(suffix)}; expected .json, .csv or .txt (TAPTC)")
+    if suffix not in FORMATS:
+        *others, last = FORMATS
+        raise ScenarioError(f"{path} has the suffix {shown(suffix)}; expected {', '.join(others)} or {last}")
+    FORMATS[suffix].write(scenario, path, path.parent / "agent")
 
 
-def _agents(path: StrPath | None) -> Part | None:
-    if path is None:
-        return None
-    suffix = suffix_of(path)
-    if suffix == ".json":
-        raise ScenarioError(f"{path} has the suffix '.json'; expected a .csv or TAPTC agent file")
-    return read_csv_part(path) if suffix == ".csv" else read_agent_part(path)
+def _agents(path: StrPath) -> Part:
+    read = format_of(path).read_agents
+    if read is None:
+        raise ScenarioError(f"{path} has the suffix {shown(suffix_of(path))}; expected {AGENT_FILE}")
+    return read(path)

@@ -13,8 +13,8 @@ from msgspec import Meta
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.parts import MapRow, Part, Row, in_id_order, robot_rows, task_rows
 from mrta_zoo.io.paths import suffix_of
-from mrta_zoo.io.source import StrPath, read_text
 from mrta_zoo.io.strict_json import read_document, write_document
+from mrta_zoo.io.text_files import StrPath, read_text
 from mrta_zoo.quantities import Who
 from mrta_zoo.scenario import Scenario, quantities_of
 

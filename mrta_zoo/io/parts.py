@@ -12,7 +12,7 @@ import numpy as np
 
 from mrta_zoo.digits import full
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.io.source import check_name, shown
+from mrta_zoo.io.text_files import check_name, shown
 from mrta_zoo.map import square_around
 from mrta_zoo.names import usable_name
 from mrta_zoo.quantities import BOUNDS, COORDINATE, LARGEST, SMALLEST, FloatArray, RowError, Who

@@ -11,8 +11,8 @@ from msgspec import Meta
 
 from mrta_zoo.errors import PlanError
 from mrta_zoo.io.json_format import Index, NonNegative, Positive
-from mrta_zoo.io.source import StrPath
 from mrta_zoo.io.strict_json import read_document, write_document
+from mrta_zoo.io.text_files import StrPath
 from mrta_zoo.left_out import LeftOut, Reason
 from mrta_zoo.plan import Plan
 from mrta_zoo.verify import Score

@@ -9,7 +9,7 @@ from dataclasses import astuple, fields
 from typing import TYPE_CHECKING
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.io.source import StrPath, write_text
+from mrta_zoo.io.text_files import StrPath, write_text
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance

@@ -12,7 +12,7 @@ from typing import Any, TypeVar, get_args, get_type_hints
 import msgspec
 
 from mrta_zoo.errors import MrtaError
-from mrta_zoo.io.source import StrPath, check_name, read_text, shown, write_text
+from mrta_zoo.io.text_files import StrPath, check_name, read_text, shown, write_text
 
 Document = TypeVar("Document", bound=msgspec.Struct)
 

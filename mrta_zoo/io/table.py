@@ -7,7 +7,7 @@ import io
 from collections.abc import Sequence
 
 from mrta_zoo.errors import MrtaError
-from mrta_zoo.io.source import StrPath, read_text, shown
+from mrta_zoo.io.text_files import StrPath, read_text, shown
 from mrta_zoo.wording import counted
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from mrta_zoo.errors import ScenarioError
 from mrta_zoo.io.parts import MapRow, Part, Row, in_id_order
 from mrta_zoo.io.paths import as_spelt
-from mrta_zoo.io.source import StrPath, count, number, read_text, shown, write_text
+from mrta_zoo.io.text_files import StrPath, count, number, read_text, shown, write_text
 from mrta_zoo.map import map_origin_for
 from mrta_zoo.scenario import QUANTITIES, Scenario
 from mrta_zoo.wording import counted

@@ -11,8 +11,8 @@ from msgspec import Meta
 from mrta_zoo.errors import PlanError
 from mrta_zoo.io.json_format import Index, MapJson, NonNegative, RobotJson, TaskJson, json_part, scenario_fields
 from mrta_zoo.io.parts import assemble
-from mrta_zoo.io.source import StrPath
 from mrta_zoo.io.strict_json import read_document, write_document
+from mrta_zoo.io.text_files import StrPath
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.trace import Choice, Trace
 

@@ -18,7 +18,7 @@ from mrta_zoo.actions import noop, split_mask
 from mrta_zoo.env.observation import MISSION_FEATURES, TASK_FEATURES, Observation
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.paths import check_no_url, suffix_of
-from mrta_zoo.io.source import check_name
+from mrta_zoo.io.text_files import check_name
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks

@@ -80,5 +80,5 @@ def test_advice() -> None:
 
 
 def test_what_is_not_known_cannot_be_taken() -> None:
-    with pytest.raises(ActionError, match="may not choose task 0 .*: ruled out"):
+    with pytest.raises(ActionError, match=r"may not choose task 0 .*: ruled out"):
         Mission(SCENARIO).assign(0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from mrta_zoo.errors import ConfigError, ScenarioError
 from mrta_zoo.generators import TaptcGenerator, UniformGenerator
 from mrta_zoo.io import read_cases
 from mrta_zoo.io.case_folder import write_case_folder
+from mrta_zoo.io.formats import FORMATS, FormatName
 
 SCENARIO = UniformGenerator(tasks=(3, 3))(np.random.default_rng(0), "case")
 
@@ -66,3 +68,7 @@ def test_errors_of_a_case_folder_name_its_final_place(tmp_path: Path, exists: bo
     with pytest.raises(ScenarioError, match=re.escape(f"{folder}/group1/fast.txt: robot 0 has speed 2")):
         write_case_folder([fast], folder, "taptc")
     assert [path.name for path in tmp_path.rglob("*")] == ["cases"] * exists
+
+
+def test_every_format_has_its_row() -> None:
+    assert sorted(get_args(FormatName)) == sorted(form.name for form in FORMATS.values())

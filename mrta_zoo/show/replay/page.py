@@ -11,7 +11,7 @@ from string import Template
 import msgspec
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.io.source import write_text
+from mrta_zoo.io.text_files import write_text
 from mrta_zoo.show import palette
 from mrta_zoo.show.replay.episode import EpisodeJson, PlaceJson, episode_of, place_of
 from mrta_zoo.trace import Trace

@@ -1,4 +1,4 @@
-"""Input files: their text, the numbers and names in it, and how error messages show them."""
+"""Text files: reading and writing them, the numbers and names in them, and how error messages show these."""
 
 from __future__ import annotations
 
