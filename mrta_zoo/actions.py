@@ -34,6 +34,12 @@ def split_mask(mask: Mask, max_tasks: int) -> tuple[Mask, Mask]:
     return mask[..., :max_tasks], mask[..., max_tasks:]
 
 
+def must_wait(mask: Mask, max_tasks: int) -> Mask:
+    """(...) bool, where a mask, or more of them, leave only the no-op; arguments as those of `split_mask`."""
+    waits: Mask = mask[..., max_tasks:].any(-1)
+    return waits
+
+
 def as_action(agent: str, action: Any, num_actions: int) -> int:
     """An action as a Python integer from 0 to ``num_actions - 1``.
 

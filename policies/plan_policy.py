@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mrta_zoo.actions import noop, split_mask
+from mrta_zoo.actions import must_wait, noop, split_mask
 from mrta_zoo.env.observation import ROBOT_FEATURES, Observation
 from mrta_zoo.errors import PlanError
 from mrta_zoo.plan import Plan
@@ -51,9 +51,9 @@ class PlanPolicy:
         if robot >= len(self._next):
             raise PlanError(f"the plan has {counted(len(self._next), 'route')}, none for robot {robot}")
         max_tasks = len(observation["observation"]["tasks"])
-        route, (mask, idle) = self.plan.routes[robot], split_mask(observation["action_mask"], max_tasks)
-        if idle.any():
+        if must_wait(observation["action_mask"], max_tasks):
             return noop(max_tasks)
+        route, (mask, _) = self.plan.routes[robot], split_mask(observation["action_mask"], max_tasks)
         while self._next[robot] < len(route):
             task = route[self._next[robot]]
             self._next[robot] += 1

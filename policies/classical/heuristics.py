@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from mrta_zoo.actions import noop
+from mrta_zoo.actions import must_wait, noop
 from mrta_zoo.env.observation import EGO_FEATURES, TASK_FEATURES, Observation
 from mrta_zoo.errors import ActionError
 
@@ -71,8 +71,8 @@ class EarliestDeadlinePolicy:
             ActionError: if there is nothing to choose.
         """
         choices, tasks = _choices(observation, agent), observation["observation"]["tasks"]
-        if choices[0] == noop(len(tasks)):
-            return int(choices[0])
+        if must_wait(observation["action_mask"], len(tasks)):
+            return noop(len(tasks))
         return int(_nearest(observation, _least(choices, tasks[choices, _DEADLINE], tie=0.0))[0])
 
 
@@ -87,7 +87,7 @@ def _choices(observation: Observation, agent: str) -> Indices:
 def _nearest(observation: Observation, tasks: Indices) -> Indices:
     """The tasks of `tasks` nearest to the robot, in order of index."""
     seen = observation["observation"]
-    if tasks[0] == noop(len(seen["tasks"])):  # which then is the only choice
+    if must_wait(observation["action_mask"], len(seen["tasks"])):
         return tasks
     places = seen["tasks"][tasks].astype(np.float64)
     ego = seen["ego"].astype(np.float64)

@@ -8,7 +8,7 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 
-from mrta_zoo.actions import split_mask
+from mrta_zoo.actions import must_wait, split_mask
 from mrta_zoo.env.observation import EGO_FEATURES, MISSION_FEATURES, ROBOT_FEATURES, TASK_FEATURES
 from mrta_zoo.policies.cpu_threads import few_threads
 from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
@@ -49,13 +49,15 @@ class ActorCritic(nn.Module):
         """
         tables = observation["observation"]
         rows = tables["tasks"].shape[-2]
-        mask, noop = split_mask(observation["action_mask"] > 0, rows)
+        allowed = observation["action_mask"] > 0
+        mask, noop = split_mask(allowed, rows)
         leading = mask.shape[:-1]
         flat = {name: table.reshape(-1, *table.shape[len(leading) :]) for name, table in tables.items()}
         states = DecisionStates.of_tables(flat, mask.reshape(-1, rows))
         scores: Tensor = self.network(self.network.encode(Tasks.of_tables(flat)), states).reshape(*leading, rows)
-        if noop.shape[-1]:  # where the no-op is allowed, nothing else is
-            scores = torch.cat((scores.masked_fill(noop, -torch.inf), torch.where(noop, 0.0, -torch.inf)), -1)
+        if noop.shape[-1]:
+            waits = must_wait(allowed, rows)[..., None]
+            scores = torch.cat((scores.masked_fill(waits, -torch.inf), torch.where(waits, 0.0, -torch.inf)), -1)
         return scores.clamp(min=torch.finfo(scores.dtype).min)
 
     @few_threads()

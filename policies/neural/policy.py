@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 import torch
 
-from mrta_zoo.actions import noop, split_mask
+from mrta_zoo.actions import must_wait, noop, split_mask
 from mrta_zoo.env.observation import MISSION_FEATURES, TASK_FEATURES, Observation
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io.paths import check_no_url, suffix_of
@@ -131,9 +131,9 @@ class NeuralPolicy:
             raise ConfigError('a policy reads Dict observations; make the environment with observation="dict"')
         seen, mask = observation["observation"], observation["action_mask"]
         tasks = len(seen["tasks"])
-        mask, idle = split_mask(mask, tasks)
-        if idle.any():
+        if must_wait(mask, tasks):
             return Preferences(noop(tasks), 0.0, np.zeros(tasks, dtype=np.float32))
+        mask, _ = split_mask(mask, tasks)
         observation = {**observation, "action_mask": mask}
         if not mask.any():
             raise ConfigError("this robot has nothing to choose; a policy acts only when its robot's turn comes")
