@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
@@ -15,7 +16,7 @@ from mrta_zoo.policies.neural.sharing import Network
 from mrta_zoo.policies.neural.weights import load_state
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario_batch import ScenarioBatch
-from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.config import BaselineName, TrainConfig
 from mrta_zoo.train.objective import Objective
 
 
@@ -146,10 +147,16 @@ class RolloutBaseline:
         return self.objective(roll_out(self.network, scenarios, mask_rule=self.mask_rule), scenarios)
 
 
+BASELINES: dict[BaselineName, Callable[[TrainConfig, Network, Objective], Baseline]] = {
+    "samples": lambda config, network, objective: SamplesBaseline(),
+    "rollout": lambda config, network, objective: RolloutBaseline(
+        network, objective, config.mask_rule, config.significance
+    ),
+    "exponential": lambda config, network, objective: ExponentialBaseline(config.baseline_decay),
+}
+"""Every baseline, at the start of a run."""
+
+
 def build_baseline(config: TrainConfig, network: Network, objective: Objective) -> Baseline:
     """The baseline that a configuration names, at the start of its run."""
-    if config.baseline == "rollout":
-        return RolloutBaseline(network, objective, config.mask_rule, config.significance)
-    if config.baseline == "exponential":
-        return ExponentialBaseline(config.baseline_decay)
-    return SamplesBaseline()
+    return BASELINES[config.baseline](config, network, objective)

@@ -13,7 +13,7 @@ from mrta_zoo.eval.studies.budget import TrainingBudget
 from mrta_zoo.eval.studies.held_out import Distribution, HeldOut
 from mrta_zoo.eval.studies.run import Run
 from mrta_zoo.io import Case
-from mrta_zoo.policies.neural.sharing import USUAL_KINDS
+from mrta_zoo.policies.neural.sharing import WAYS
 from mrta_zoo.train.config import TrainConfig
 
 MAX_SEEDS = 1000
@@ -43,9 +43,7 @@ class Arm:
     @property
     def networks(self) -> int:
         """How many networks are trained."""
-        return {"shared": 1, "by-capacity": len(USUAL_KINDS), "independent": self.config.max_robots}[
-            self.config.sharing
-        ]
+        return WAYS[self.config.sharing].count(self.config.max_robots, self.config.kinds)
 
     @property
     def episodes(self) -> int:

@@ -7,12 +7,12 @@ and 4 with workloads of 40.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 from threading import RLock
-from typing import Literal, cast
+from typing import Literal, NamedTuple, cast
 
 import torch
 from torch import Tensor, nn
@@ -166,6 +166,28 @@ class ByCapacityNetworks(SeveralNetworks):
 Network = AllocationNetwork | SeveralNetworks
 
 
+class Way(NamedTuple):
+    """A way of sharing.
+
+    Attributes:
+        build: ``build(config, robots, kinds)`` gives fresh networks.
+        count: ``count(robots, kinds)`` says how many these are.
+    """
+
+    build: Callable[[NetworkConfig, int, Sequence[float]], Network]
+    count: Callable[[int, Sequence[float]], int]
+
+
+WAYS: dict[Sharing, Way] = {
+    "shared": Way(lambda config, robots, kinds: AllocationNetwork(config), lambda robots, kinds: 1),
+    "independent": Way(lambda config, robots, kinds: IndependentNetworks(config, robots), lambda robots, kinds: robots),
+    "by-capacity": Way(
+        lambda config, robots, kinds: ByCapacityNetworks(config, kinds), lambda robots, kinds: len(kinds)
+    ),
+}
+"""Every way of sharing. To add one, add its name to `Sharing` and its row here."""
+
+
 def check_kinds(kinds: Sequence[float]) -> None:
     """Check that these are kinds of robots, the strongest last.
 
@@ -209,11 +231,8 @@ def build_network(
     Raises:
         ConfigError: if there is no such sharing or no such kinds.
     """
+    if sharing not in WAYS:
+        *others, last = map(repr, WAYS)
+        raise ConfigError(f"sharing is {sharing!r}; expected {', '.join(others)} or {last}")
     with seeded(seed):
-        if sharing == "shared":
-            return AllocationNetwork(config)
-        if sharing == "independent":
-            return IndependentNetworks(config, robots)
-        if sharing == "by-capacity":
-            return ByCapacityNetworks(config, kinds)
-    raise ConfigError(f"sharing is {sharing!r}; expected 'shared', 'independent' or 'by-capacity'")
+        return WAYS[sharing].build(config, robots, kinds)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -15,8 +16,8 @@ from mrta_zoo.policies.neural.rollout import roll_out
 from mrta_zoo.policies.neural.sharing import build_network
 from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train import checkpoint
-from mrta_zoo.train.baselines import ExponentialBaseline, RolloutBaseline, SamplesBaseline
-from mrta_zoo.train.config import TrainConfig
+from mrta_zoo.train.baselines import BASELINES, ExponentialBaseline, RolloutBaseline, SamplesBaseline
+from mrta_zoo.train.config import BaselineName, TrainConfig
 from mrta_zoo.train.objective import missed_share
 
 
@@ -24,6 +25,10 @@ def scenarios(count: int) -> ScenarioBatch:
     rng = np.random.default_rng(0)
     generator = UniformGenerator(tasks=8, robots=2, deadline=(30, 120))  # type: ignore[arg-type]
     return ScenarioBatch.of([generator(rng) for _ in range(count)])
+
+
+def test_every_baseline_has_its_row() -> None:
+    assert set(BASELINES) == set(get_args(BaselineName))
 
 
 def test_samples_baseline_compares_with_the_other_samples() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from dataclasses import replace
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -20,7 +21,14 @@ from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.capam.inputs import DecisionStates, Tasks
 from mrta_zoo.policies.neural.policy import NeuralPolicy, load_policy
 from mrta_zoo.policies.neural.rollout import roll_out
-from mrta_zoo.policies.neural.sharing import ByCapacityNetworks, IndependentNetworks, Sharing, build_network, seeded
+from mrta_zoo.policies.neural.sharing import (
+    WAYS,
+    ByCapacityNetworks,
+    IndependentNetworks,
+    Sharing,
+    build_network,
+    seeded,
+)
 from mrta_zoo.policies.neural.weights import PolicyInfo, save_policy
 from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train.config import TrainConfig
@@ -28,7 +36,10 @@ from mrta_zoo.train.reinforce import Reinforce
 
 SMALL = NetworkConfig(embedding=16, heads=2)
 TEAMS = TaptcGenerator(tasks=(8, 14), robots=(2, 4), capacity="random")
-WAYS: list[Sharing] = ["shared", "independent", "by-capacity"]
+
+
+def test_every_way_of_sharing_has_its_row() -> None:
+    assert set(WAYS) == set(get_args(Sharing))
 
 
 def draw(count: int, seed: int = 0) -> list[Scenario]:
