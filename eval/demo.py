@@ -140,7 +140,7 @@ def show_training(console: Console, folder: Path) -> None:
     """Train a small policy in a new folder for a minute or so, and print how its validation completion rises."""
     from mrta_zoo.train import checkpoint
     from mrta_zoo.train.presets import PRESETS
-    from mrta_zoo.train.progress import train
+    from mrta_zoo.train.run import train
 
     run = checkpoint.start(folder, PRESETS["smoke"])
     train(run, folder, console=console)

@@ -9,7 +9,7 @@ from mrta_zoo.digits import rounded, share
 from mrta_zoo.eval.rows import Row
 from mrta_zoo.show.terminal.sheet import Sheet
 
-Cell = Callable[[Sequence[Row]], str]
+CellText = Callable[[Sequence[Row]], str]
 
 
 def summary_tables(rows: Sequence[Row], best_known: Mapping[str, int] | None = None) -> list[Sheet]:
@@ -35,7 +35,7 @@ def summary_tables(rows: Sequence[Row], best_known: Mapping[str, int] | None = N
     return tables
 
 
-def _table(title: str, rows: Sequence[Row], cell: Cell) -> Sheet:
+def _table(title: str, rows: Sequence[Row], cell: CellText) -> Sheet:
     methods = list(dict.fromkeys(row.method for row in rows))
     sizes = sorted({(row.tasks, row.robots) for row in rows})
     shown: list[tuple[str, ...]] = []
@@ -49,7 +49,7 @@ def _table(title: str, rows: Sequence[Row], cell: Cell) -> Sheet:
     return Sheet(title, ("tasks", "robots", "cases", *methods), shown, ends=ends)
 
 
-def _cells(group: Sequence[Row], methods: Sequence[str], cell: Cell) -> list[str]:
+def _cells(group: Sequence[Row], methods: Sequence[str], cell: CellText) -> list[str]:
     """The number of cases, then a cell for each method."""
     of_method = {method: [row for row in group if row.method == method] for method in methods}
     return [

@@ -28,7 +28,11 @@ class ScenarioGenerator(Protocol):
         ...
 
 
-def draw_scenario(generator: Callable[[np.random.Generator], Scenario], rng: np.random.Generator) -> Scenario:
+DrawFunction = Callable[[np.random.Generator], Scenario]
+"""The least that a generator has to be, which may be a user's own."""
+
+
+def draw_scenario(generator: DrawFunction, rng: np.random.Generator) -> Scenario:
     """One scenario from a generator, which may be a user's own.
 
     Raises:
@@ -158,23 +162,29 @@ class TaptcGenerator:
                 raise ConfigError(
                     f"{field} is {getattr(self, field)!r}; expected one of {', '.join(get_args(allowed))}"
                 )
+        self._check_shares()
+        self._check_numbers()
+        self._check_earliest_deadlines()
+        if self.integer and min(self.map_size) < 1:
+            raise ConfigError(f"map_size is {self.map_size}; whole coordinates need sides >= 1")
+
+    def _check_shares(self) -> None:
         given: Any = self.normal_share
         shares: tuple[Any, ...] = tuple(given) if isinstance(given, (tuple, list)) else (given,)
         if not shares or not all(is_number(share) and 0 <= share <= 1 for share in shares):
             raise ConfigError(f"normal_share is {given!r}; expected one or more numbers from 0 to 1")
         object.__setattr__(self, "normal_share", tuple(float(share) for share in shares))
-        for field, least in (
-            ("slack_factor", 0.0),
-            ("spread", 1.0),
-            ("min_deadline", 0.0),
-            ("workload", 0.0),
-        ):
+
+    def _check_numbers(self) -> None:
+        for field, least in (("slack_factor", 0.0), ("spread", 1.0), ("min_deadline", 0.0), ("workload", 0.0)):
             value = getattr(self, field)
             strict = field in ("slack_factor", "min_deadline")
             if not is_number(value) or value < least or (strict and value == least):
                 bound = f"{'>' if strict else '>='} {least:g}"
                 raise ConfigError(f"{field} is {value!r}; expected a finite number {bound}")
-        # Redrawing soon ends only if the mean lies between the bounds even with the earliest D.
+
+    def _check_earliest_deadlines(self) -> None:
+        """Redrawing soon ends only if the mean lies between the bounds even with the earliest D."""
         earliest = float(np.floor(self.latest[0])) if self.integer else self.latest[0]
         if self.group != "tight":
             earliest *= self.slack_factor if self.group == "slack" else min(1.0, self.slack_factor)
@@ -187,8 +197,6 @@ class TaptcGenerator:
                 f"min_deadline is {self.min_deadline!r}; expected at most {most:g}, "
                 "the least mean of the drawn deadlines"
             )
-        if self.integer and min(self.map_size) < 1:
-            raise ConfigError(f"map_size is {self.map_size}; whole coordinates need sides >= 1")
 
     def __call__(self, rng: np.random.Generator, name: str = "taptc") -> Scenario:
         """Draw one scenario, using no other randomness than `rng`."""
@@ -230,7 +238,7 @@ class TaptcGenerator:
 
 
 @dataclass(frozen=True, slots=True)
-class Mixture:
+class MixtureGenerator:
     """Draws from one of several generators, picked anew for each scenario.
 
     Attributes:
@@ -273,10 +281,10 @@ class Mixture:
         return self.generators[chosen](rng, name)
 
 
-GENERATORS: dict[str, type[UniformGenerator] | type[TaptcGenerator] | type[Mixture]] = {
+GENERATORS: dict[str, type[UniformGenerator] | type[TaptcGenerator] | type[MixtureGenerator]] = {
     "uniform": UniformGenerator,
     "taptc": TaptcGenerator,
-    "mixture": Mixture,
+    "mixture": MixtureGenerator,
 }
 """Generators by the name used in configurations and on the command line."""
 

@@ -125,7 +125,7 @@ class Trace:
             robot = mission.actor
             done = len(mission.routes[robot])
             choice = Choice(plan.routes[robot][done] if done < len(plan.routes[robot]) else None)
-            make(mission, choice, len(choices))
+            apply_choice(mission, choice, len(choices))
             choices.append(choice)
         left = [robot for robot, route in enumerate(plan.routes) if len(mission.routes[robot]) < len(route)]
         if left:
@@ -146,7 +146,7 @@ class Trace:
                     f"decision {index} comes after the end of the mission; expected {counted(index, 'decision')}"
                 )
             yield mission, Decision(index, mission.time, mission.actor, choice)
-            make(mission, choice, index)
+            apply_choice(mission, choice, index)
 
     def decisions(self) -> tuple[Decision, ...]:
         """Every decision."""
@@ -155,7 +155,7 @@ class Trace:
 
     def mission(self, index: int | None = None) -> Mission:
         """A fresh mission as it stood before decision `index`; by default after the last one."""
-        return after(self.scenario, self.choices[:index], self.mask_rule)
+        return mission_after(self.scenario, self.choices[:index], self.mask_rule)
 
     def plan(self) -> Plan:
         """The routes taken, as a plan."""
@@ -171,7 +171,7 @@ class Trace:
         return verify(self.scenario, self.plan())
 
 
-def after(scenario: Scenario, choices: Sequence[Choice], mask_rule: MaskRule) -> Mission:
+def mission_after(scenario: Scenario, choices: Sequence[Choice], mask_rule: MaskRule) -> Mission:
     """A fresh mission in which these choices have been made.
 
     Raises:
@@ -179,11 +179,11 @@ def after(scenario: Scenario, choices: Sequence[Choice], mask_rule: MaskRule) ->
     """
     mission = Mission(scenario, mask_rule)
     for index, choice in enumerate(choices):
-        make(mission, choice, index)
+        apply_choice(mission, choice, index)
     return mission
 
 
-def make(mission: Mission, choice: Choice, index: int) -> None:
+def apply_choice(mission: Mission, choice: Choice, index: int) -> None:
     """Make the acting robot's choice and move on to the next decision.
 
     Raises:

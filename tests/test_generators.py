@@ -10,7 +10,7 @@ import pytest
 
 from mrta_zoo import Scenario
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.generators import GENERATORS, Mixture, TaptcGenerator, UniformGenerator, make_generator
+from mrta_zoo.generators import GENERATORS, MixtureGenerator, TaptcGenerator, UniformGenerator, make_generator
 
 
 def draw(generator: Any, count: int, seed: int = 0) -> list[Scenario]:
@@ -139,7 +139,7 @@ def test_redrawing_ends_even_for_narrow_windows() -> None:
 def test_mixture_follows_its_weights() -> None:
     parts = tuple(UniformGenerator(tasks=(n, n)) for n in (1, 2, 3))
     counts = [
-        [scenario.num_tasks for scenario in draw(Mixture(parts, weights), 600)]
+        [scenario.num_tasks for scenario in draw(MixtureGenerator(parts, weights), 600)]
         for weights in ((), (1, 0, 3), (0, 1, 0))
     ]
     assert [counts[0].count(n) / 600 for n in (1, 2, 3)] == pytest.approx([1 / 3] * 3, abs=0.06)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.generators import Mixture, ScenarioGenerator, TaptcGenerator, UniformGenerator
+from mrta_zoo.generators import MixtureGenerator, ScenarioGenerator, TaptcGenerator, UniformGenerator
 from mrta_zoo.train.config import TrainConfig
 
 
@@ -42,7 +42,7 @@ def training_generator(config: TrainConfig, tasks: int) -> ScenarioGenerator:
     if config.generator == "uniform":
         return uniform
     wide = TaptcGenerator(tasks=size, robots=robots, capacity="random", latest=(210.0, 320.0), min_deadline=20.0)
-    return Mixture((taptc, wide, uniform), (0.4, 0.2, 0.4))
+    return MixtureGenerator((taptc, wide, uniform), (0.4, 0.2, 0.4))
 
 
 def check_distribution(config: TrainConfig) -> None:

@@ -29,7 +29,7 @@ from mrta_zoo.train.imitation.imitator import Imitator
 from mrta_zoo.train.initial import load_initial
 from mrta_zoo.train.objective import OBJECTIVES, Objective, checked
 from mrta_zoo.train.precision import autocast, quick_attention
-from mrta_zoo.train.scenarios import Drawn, draw_validation, draws
+from mrta_zoo.train.scenarios import UpdateInput, draw_inputs, draw_validation
 from mrta_zoo.train.schedule import cosine, learning_rate
 
 
@@ -123,7 +123,7 @@ class Reinforce:
         self.history: list[Validation] = []
         self._validation: ScenarioBatch | None = None
         self._workers = options.workers if self.device.type == "cuda" else 0
-        self._draws: Iterator[Drawn] = iter(())
+        self._inputs: Iterator[UpdateInput] = iter(())
         self._imitator = Imitator(config, self.network, self.device)
 
     @property
@@ -172,7 +172,7 @@ class Reinforce:
     def _reinforce(self) -> tuple[float, int]:
         """Accumulate the gradients of REINFORCE; returns the mean loss and the number of decisions."""
         config, policy = self.config, tempered(self.network, self.config.temperature)
-        drawn = self._drawn()
+        drawn = self._next_input()
         scenarios = drawn.scenarios.to(self.device)
         with autocast(self.device, config.precision), quick_attention(self.device):
             rollout = roll_out(
@@ -228,12 +228,12 @@ class Reinforce:
         """
         self._imitator.set_plans(plans)
 
-    def _drawn(self) -> Drawn:
+    def _next_input(self) -> UpdateInput:
         """The input of this update. After a resume or a failed update, drawing starts again from here."""
-        drawn = next(self._draws, None)
+        drawn = next(self._inputs, None)
         if drawn is None or drawn.update != self.update:
-            self._draws = draws(self.config, self.generator, self.update, self._workers)
-            drawn = next(self._draws)
+            self._inputs = draw_inputs(self.config, self.generator, self.update, self._workers)
+            drawn = next(self._inputs)
         return drawn
 
 

@@ -13,14 +13,14 @@ from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train.child_process import pool_of
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, team, training_generator
-from mrta_zoo.train.streams import Stream, random_numbers
+from mrta_zoo.train.random_streams import Stream, random_numbers
 
 AHEAD = 4
 """Updates that each worker process draws ahead."""
 
 
 @dataclass(frozen=True, slots=True)
-class Drawn:
+class UpdateInput:
     """The input of one update: scenarios of one size, and the seed with which missions are sampled."""
 
     update: int
@@ -28,7 +28,7 @@ class Drawn:
     seed: int
 
 
-def draw(config: TrainConfig, generator: ScenarioGenerator | None, update: int) -> Drawn:
+def draw_input(config: TrainConfig, generator: ScenarioGenerator | None, update: int) -> UpdateInput:
     """The scenarios of an update of REINFORCE, on the CPU; they follow from the run's seed and the update's number."""
     rng = random_numbers(config.seed, Stream.UPDATES, update)
     if generator is None:
@@ -41,11 +41,11 @@ def draw(config: TrainConfig, generator: ScenarioGenerator | None, update: int) 
         max_robots=most_robots,
         mask_rule=config.mask_rule,
     )
-    return Drawn(update, scenarios, int(rng.integers(2**63)))
+    return UpdateInput(update, scenarios, int(rng.integers(2**63)))
 
 
 def draw_validation(config: TrainConfig, generator: ScenarioGenerator | None) -> ScenarioBatch:
-    """The scenarios that a run is validated on, on the CPU; `generator` as for `draw`."""
+    """The scenarios that a run is validated on, on the CPU; `generator` as for `draw_input`."""
     rng = random_numbers(config.seed, Stream.VALIDATION)
     drawn = [
         draw_scenario(generator or training_generator(config, draw_size(config, rng)), rng)
@@ -54,26 +54,26 @@ def draw_validation(config: TrainConfig, generator: ScenarioGenerator | None) ->
     return ScenarioBatch.of(drawn, mask_rule=config.mask_rule)
 
 
-def draws(
+def draw_inputs(
     config: TrainConfig, generator: ScenarioGenerator | None, first: int, workers: int = 0
-) -> Generator[Drawn, None, None]:
+) -> Generator[UpdateInput, None, None]:
     """The input of each update from number `first` on, without end.
 
     Args:
         config: the run.
         generator: draws the scenarios; None for the configuration's.
         first: number of the first update.
-        workers: processes that draw ahead; they end when this generator is closed. 0 draws in this process.
+        workers: processes that draw ahead; they end when this iterator is closed. 0 draws in this process.
 
     Raises:
         ConfigError: if one of the processes dies.
     """
     if not workers:
-        yield from (draw(config, generator, update) for update in count(first))
+        yield from (draw_input(config, generator, update) for update in count(first))
     else:
         with pool_of(workers) as pool:
-            ahead: deque[Future[Drawn]] = deque()
+            ahead: deque[Future[UpdateInput]] = deque()
             for update in count(first):
-                ahead.append(pool.submit(draw, config, generator, update))
+                ahead.append(pool.submit(draw_input, config, generator, update))
                 if len(ahead) > AHEAD * workers:
                     yield ahead.popleft().result()

@@ -31,11 +31,11 @@ class Group:
     """Cases that are looked at together.
 
     Attributes:
-        tasks: their number of tasks, None for any.
+        tasks: their number of tasks.
         robots: their number of robots, None for any.
     """
 
-    tasks: int | None = None
+    tasks: int
     robots: int | None = None
 
     @property
@@ -43,7 +43,7 @@ class Group:
         """What a column or panel is called."""
         if self.robots is not None:
             return counted(self.robots, "robot")
-        return "all cases" if self.tasks is None else f"all with {counted(self.tasks, 'task')}"
+        return f"all with {counted(self.tasks, 'task')}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,10 +83,9 @@ class Results:
 
     def select(self, group: Group, method: str) -> pd.DataFrame:
         """A method's rows of a group of cases, in the order of the cases."""
-        chosen = self.frame["method"] == method
-        for column, value in (("tasks", group.tasks), ("robots", group.robots)):
-            if value is not None:
-                chosen &= self.frame[column] == value
+        chosen = (self.frame["method"] == method) & (self.frame["tasks"] == group.tasks)
+        if group.robots is not None:
+            chosen &= self.frame["robots"] == group.robots
         return self.frame[chosen]
 
     def cases(self, group: Group) -> int:

@@ -24,7 +24,7 @@ from mrta_zoo.wording import counted
 with importing("report", "a figure"):
     from matplotlib.figure import Figure
 
-COLOURS = ("#22303c", "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00")
+COLOURS = (INK, "#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00")
 COLUMNS = 3
 """Panels in a line, at most."""
 NOT_FLAGS = ("validations", "validation_scenarios")

@@ -20,8 +20,8 @@ from mrta_zoo.train import checkpoint
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.imitation.plans import make_plans
 from mrta_zoo.train.presets import PRESETS
-from mrta_zoo.train.progress import train
 from mrta_zoo.train.reinforce import RunOptions
+from mrta_zoo.train.run import train
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

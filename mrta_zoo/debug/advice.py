@@ -7,7 +7,7 @@ from typing import Any
 
 from mrta_zoo.debug.advisors import Advisor
 from mrta_zoo.mission import Mission
-from mrta_zoo.trace import Choice, Trace, after, make
+from mrta_zoo.trace import Choice, Trace, apply_choice, mission_after
 
 
 class Advice:
@@ -50,12 +50,12 @@ class Advice:
             self._states = {0: state}
             return
         begin = max(index for index in self._states if index <= position)
-        earlier = after(mission.scenario, choices[:begin], mission.mask_rule)
+        earlier = mission_after(mission.scenario, choices[:begin], mission.mask_rule)
         for index in range(begin, position + 1):
             advice, self._states[index + 1] = advisor.advise(earlier, self._states[index])
             self._advice.setdefault(index, advice)
             if index < position:
-                make(earlier, choices[index], index)
+                apply_choice(earlier, choices[index], index)
 
 
 def _advice_in(choice: Choice) -> Choice:

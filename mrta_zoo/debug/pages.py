@@ -22,7 +22,7 @@ Subject = Literal["tasks", "robots", "log", "help"]
 
 
 @dataclass(slots=True)
-class View:
+class TableView:
     """Which table the user looks at, and how.
 
     Attributes:
@@ -84,7 +84,7 @@ class Listing:
     spare: tuple[str, ...] = ()
 
 
-def listing(stepper: Stepper, view: View, commands: Sequence[tuple[str, str]]) -> Listing:
+def listing(stepper: Stepper, view: TableView, commands: Sequence[tuple[str, str]]) -> Listing:
     """The table that the user looks at.
 
     Args:
@@ -101,7 +101,7 @@ def listing(stepper: Stepper, view: View, commands: Sequence[tuple[str, str]]) -
     return _tasks(stepper, view)
 
 
-def _tasks(stepper: Stepper, view: View) -> Listing:
+def _tasks(stepper: Stepper, view: TableView) -> Listing:
     robot = stepper.robot if view.robot is None else view.robot
     own = robot == stepper.robot
     advice, made = (stepper.advice, stepper.made) if own else (None, None)

@@ -11,7 +11,7 @@ from mrta_zoo.mission import Mission
 from mrta_zoo.plan import Plan
 from mrta_zoo.policies.protocol import Policy, Solver
 from mrta_zoo.scenario import Scenario
-from mrta_zoo.trace import Choice, Trace, make
+from mrta_zoo.trace import Choice, Trace, apply_choice
 
 LEAST, FEW = 1e-4, 10
 """Probabilities below `LEAST` are not recorded, unless they are among the `FEW` largest."""
@@ -54,7 +54,7 @@ def play(scenario: Scenario, advisor: Advisor, first: Sequence[Choice] = ()) -> 
             choice, state = advisor.advise(mission, state)
             if len(choices) < len(first):
                 choice = overrule(choice, first[len(choices)].task)
-        make(mission, choice, len(choices))
+        apply_choice(mission, choice, len(choices))
         choices.append(recorded(choice))
     return Trace(
         scenario, tuple(choices), advisor.mask_rule, advisor.method, advisor.decode, advisor.seed, advisor.bound

@@ -10,7 +10,7 @@ from typing import get_args
 from mrta_zoo.debug.advisors import Advisor, PolicyAdvisor
 from mrta_zoo.debug.naming import DIGITS, find, identify, numbers_count
 from mrta_zoo.debug.outlook import SortKey
-from mrta_zoo.debug.pages import Listing, Subject, View, listing
+from mrta_zoo.debug.pages import Listing, Subject, TableView, listing
 from mrta_zoo.debug.stepper import Stepper
 from mrta_zoo.errors import ConfigError
 from mrta_zoo.io import read_trace
@@ -23,7 +23,7 @@ _Run = Callable[["Session", str], str]
 
 
 @dataclass(frozen=True, slots=True)
-class Command:
+class SessionCommand:
     """One command.
 
     Attributes:
@@ -51,7 +51,7 @@ class Command:
         return ", ".join(filter(None, (self.short, self.name))) + (f" {self.argument}" if self.argument else "")
 
 
-COMMANDS: list[Command] = []
+SESSION_COMMANDS: list[SessionCommand] = []
 """All commands, in the order in which help lists them."""
 
 
@@ -59,7 +59,7 @@ def _command(summary: str, *, short: str = "", argument: str = "") -> Callable[[
     """Make a method of `Session` the command of its name."""
 
     def add(run: _Run) -> _Run:
-        COMMANDS.append(Command(run.__name__, short, argument, summary, run))
+        SESSION_COMMANDS.append(SessionCommand(run.__name__, short, argument, summary, run))
         return run
 
     return add
@@ -86,7 +86,7 @@ class Session:
 
     def __init__(self, stepper: Stepper, advisor: Advisor | None = None, path: Path | None = None) -> None:
         self.stepper, self._advisor, self.path = stepper, advisor, path
-        self.view = View()
+        self.view = TableView()
         self.over = False
         self.unsaved = 0
 
@@ -103,14 +103,14 @@ class Session:
         before = self.stepper.position
         said = command.run(self, argument)
         if self.stepper.position != before or command.name == "load":
-            self.view = View(order=self.view.order)
+            self.view = TableView(order=self.view.order)
         return said
 
     def listing(self) -> Listing:
         """The table that the user looks at."""
-        return listing(self.stepper, self.view, [(each.usage, each.summary) for each in COMMANDS])
+        return listing(self.stepper, self.view, [(each.usage, each.summary) for each in SESSION_COMMANDS])
 
-    def _understood(self, line: str) -> tuple[Command, str]:
+    def _understood(self, line: str) -> tuple[SessionCommand, str]:
         """The command and its argument."""
         if not line:
             return _BY_NAME["follow"], ""
@@ -124,7 +124,7 @@ class Session:
                 raise ConfigError(f"{line!r} is a task and a command; expected {expected}")
             return _BY_NAME["take"], line
         if command is None:
-            known = ", ".join(each.name for each in COMMANDS)
+            known = ", ".join(each.name for each in SESSION_COMMANDS)
             task = "a number of a task" if not names else "a task's name" + " or number" * numbers_count(names)
             raise ConfigError(f"there is no command {name!r}; expected {task}, or one of {known}")
         several = len(argument.split()) > 1 and not command.names_one
@@ -192,7 +192,7 @@ class Session:
     def sort(self, order: str) -> str:
         for known in get_args(SortKey):
             if order == known:
-                self.view = View("tasks", robot=self.view.robot, order=known)
+                self.view = TableView("tasks", robot=self.view.robot, order=known)
                 return f"tasks by {order}"
         raise ConfigError(f"there is no order {order!r}; expected one of {', '.join(get_args(SortKey))}")
 
@@ -248,7 +248,7 @@ class Session:
         return f"decision {stepper.position}: {robot} chooses at {time(stepper.mission.time)}"
 
     def _show(self, subject: Subject, robot: int | None = None) -> str:
-        self.view = View(subject, robot=robot, order=self.view.order)
+        self.view = TableView(subject, robot=robot, order=self.view.order)
         return ""
 
     def _chosen(self, choose: Callable[[], Choice], own: bool = False) -> str:
@@ -266,7 +266,7 @@ class Session:
         return f"decision {index}: {scenario.robot_name(robot)} {what}"
 
 
-_BY_NAME = {name: command for command in COMMANDS for name in (command.name, command.short) if name}
+_BY_NAME = {name: command for command in SESSION_COMMANDS for name in (command.name, command.short) if name}
 _BY_NAME["?"] = _BY_NAME["help"]
 
 

@@ -16,7 +16,7 @@ from mrta_zoo.plan import Plan
 from mrta_zoo.policies.protocol import Policy, Solver
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
-from mrta_zoo.trace import Choice, Trace, after, make
+from mrta_zoo.trace import Choice, Trace, apply_choice, mission_after
 from mrta_zoo.wording import counted
 
 
@@ -174,7 +174,7 @@ class Stepper:
             if (made := self.made) is None:
                 self.follow()
             else:
-                make(self.mission, made, self.position)
+                apply_choice(self.mission, made, self.position)
                 self.position += 1
 
     def go_to(self, position: int) -> None:
@@ -186,7 +186,7 @@ class Stepper:
         if position < 0:
             raise ActionError(f"there is no decision {position}; expected a number from 0")
         if position < self.position:
-            self.mission = after(self.scenario, self._choices[:position], self.mask_rule)
+            self.mission = mission_after(self.scenario, self._choices[:position], self.mask_rule)
             self.position = position
         elif position > self.position and not self.done:
             self.forward(position - self.position)

@@ -14,11 +14,10 @@ import numpy as np
 
 from mrta_zoo.env.rewards import Reward, RewardName, make_reward
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.generators import GENERATORS, TaptcGenerator, draw_scenario, make_generator
+from mrta_zoo.generators import GENERATORS, DrawFunction, TaptcGenerator, draw_scenario, make_generator
 from mrta_zoo.rules import MaskRule, check_mask_rule
 from mrta_zoo.scenario import Scenario
 
-Generator = Callable[[np.random.Generator], Scenario]
 ObservationForm = Literal["dict", "masked", "flat"]
 RenderMode = Literal["ansi", "human", "rgb_array"]
 Illegal = Literal["terminate", "raise", "replace"]
@@ -33,7 +32,7 @@ class Options(TypedDict, total=False):
     """The keyword arguments of the environment, for type checkers; `Settings` says what they mean."""
 
     scenario: Scenario | None
-    generator: Generator | str | None
+    generator: DrawFunction | str | None
     max_tasks: int | None
     max_robots: int | None
     mask_rule: MaskRule
@@ -76,7 +75,7 @@ class Settings:
     """
 
     scenario: Scenario | None = None
-    generator: Generator | str | None = None
+    generator: DrawFunction | str | None = None
     max_tasks: int | None = None
     max_robots: int | None = None
     mask_rule: MaskRule = "feasible"
@@ -204,7 +203,7 @@ def one_of(field: str, value: object, allowed: tuple[str, ...]) -> None:
         raise ConfigError(f"{field} is {_short(value)}; expected one of {', '.join(allowed)}")
 
 
-def _make_generator(generator: Generator | str | None) -> Generator:
+def _make_generator(generator: DrawFunction | str | None) -> DrawFunction:
     if generator is None:
         return TaptcGenerator()
     if isinstance(generator, str):

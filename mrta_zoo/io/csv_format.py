@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import get_args
 
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.io.parts import MapRow, Part, Row, in_id_order, place_in_file, robot_rows, task_rows
+from mrta_zoo.io.parts import EntityRow, MapRow, Part, in_id_order, place_in_file, robot_rows, task_rows
 from mrta_zoo.io.paths import suffix_of
 from mrta_zoo.io.table import read_table
 from mrta_zoo.io.text_files import StrPath, number, shown, write_text
@@ -42,7 +42,7 @@ def read_csv_part(path: StrPath) -> Part:
     table = read_table(path, ScenarioError)
     header_where, header = table[0][0], [column.lower() for column in table[0][1]]
     _check_header(header_where, header)
-    rows: dict[str, list[tuple[str, Row]]] = {"task": [], "robot": []}
+    rows: dict[str, list[tuple[str, EntityRow]]] = {"task": [], "robot": []}
     once: dict[str, tuple[str, float, float]] = {}
     for where, cells in table[1:]:
         row = dict(zip(header, cells, strict=True))
@@ -58,7 +58,7 @@ def read_csv_part(path: StrPath) -> Part:
                 for each in quantities
                 if each.default is None or row.get(each.name)
             }
-            rows[kind].append((row.get("id", ""), Row(where, x, y, values, row.get("name", ""))))
+            rows[kind].append((row.get("id", ""), EntityRow(where, x, y, values, row.get("name", ""))))
         elif kind in once:
             raise ScenarioError(
                 f"{where}: a second {kind} row, after {place_in_file(once[kind][0])}; expected at most one"

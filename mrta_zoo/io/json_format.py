@@ -11,7 +11,7 @@ import msgspec
 from msgspec import Meta
 
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.io.parts import MapRow, Part, Row, in_id_order, robot_rows, task_rows
+from mrta_zoo.io.parts import EntityRow, MapRow, Part, in_id_order, robot_rows, task_rows
 from mrta_zoo.io.paths import suffix_of
 from mrta_zoo.io.strict_json import read_document, write_document
 from mrta_zoo.io.text_files import StrPath, read_text
@@ -119,12 +119,12 @@ def _map(path: StrPath, size: MapJson) -> MapRow:
     return MapRow(f"{path}: map", size.width, size.height, x, y)
 
 
-def _rows(where: str, rows: Sequence[RowJson], who: Who) -> list[tuple[str, Row]]:
+def _rows(where: str, rows: Sequence[RowJson], who: Who) -> list[tuple[str, EntityRow]]:
     """Rows with their ids."""
     found = []
     for index, row in enumerate(rows):
         values = {each.name: getattr(row, each.name) for each in quantities_of(who)}
-        found.append((_text(row.id), Row(f"{where}[{index}]", row.x, row.y, values, _text(row.name))))
+        found.append((_text(row.id), EntityRow(f"{where}[{index}]", row.x, row.y, values, _text(row.name))))
     return found
 
 

@@ -21,7 +21,7 @@ from mrta_zoo.wording import composed, counted
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class EntityRow:
     """One task or robot as read.
 
     Attributes:
@@ -63,8 +63,8 @@ class Part:
     """
 
     path: str
-    tasks: tuple[Row, ...] = ()
-    robots: tuple[Row, ...] = ()
+    tasks: tuple[EntityRow, ...] = ()
+    robots: tuple[EntityRow, ...] = ()
     map: MapRow | None = None
     name: str = ""
     num_robots: int | None = None
@@ -100,7 +100,7 @@ def assemble(main: Part, agents: Part | None) -> Scenario:
             f"{agents.path} has {counted(len(agents.robots), 'robot')}; expected {main.num_robots}, "
             f"the number in line 1 of {main.path}"
         )
-    rows_of: dict[Who, tuple[Row, ...]] = {"task": main.tasks, "robot": agents.robots}
+    rows_of: dict[Who, tuple[EntityRow, ...]] = {"task": main.tasks, "robot": agents.robots}
     for row in (*main.tasks, *agents.robots):
         for letter, value in (("x", row.x), ("y", row.y)):
             _check_number(row.where, letter, value, -LARGEST, COORDINATE)
@@ -145,11 +145,11 @@ def _map_text(row: MapRow) -> str:
     )
 
 
-def _names(rows: Sequence[Row], who: Who) -> tuple[str, ...]:
+def _names(rows: Sequence[EntityRow], who: Who) -> tuple[str, ...]:
     """The names of the rows, which must either all have one or none."""
     if not any(row.name for row in rows):
         return ()
-    first: dict[str, Row] = {}
+    first: dict[str, EntityRow] = {}
     for row in rows:
         if not row.name:
             raise ScenarioError(f"{row.where}: this {who} has no name; expected one for each {who}, as others have one")
@@ -178,7 +178,7 @@ def place_in_file(where: str) -> str:
     return re.split(r"[:,] ", where)[-1]
 
 
-def in_id_order(rows: Sequence[tuple[str, Row]], what: str) -> tuple[Row, ...]:
+def in_id_order(rows: Sequence[tuple[str, EntityRow]], what: str) -> tuple[EntityRow, ...]:
     """Rows, given with their ids: sorted by the ids if these are 0..N-1, each once, otherwise named after them.
 
     "01" is a name, not such a number. Rows that have a name keep it.
@@ -189,7 +189,7 @@ def in_id_order(rows: Sequence[tuple[str, Row]], what: str) -> tuple[Row, ...]:
     ids = [given for given, _ in rows]
     if not any(ids):
         return tuple(row for _, row in rows)
-    first: dict[str, Row] = {}
+    first: dict[str, EntityRow] = {}
     for given, row in rows:
         if not given:
             raise ScenarioError(f"{row.where}: this {what} has no id; expected one for each {what}, as others have one")

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from mrta_zoo.errors import ScenarioError
-from mrta_zoo.io.parts import MapRow, Part, Row, in_id_order
+from mrta_zoo.io.parts import EntityRow, MapRow, Part, in_id_order
 from mrta_zoo.io.paths import as_spelt
 from mrta_zoo.io.text_files import StrPath, count, number, read_text, shown, write_text
 from mrta_zoo.map import map_origin_for
@@ -75,7 +75,7 @@ def read_task_part(path: StrPath) -> Part:
         )
         workload = number(fields[3], where, "workload", 0, ScenarioError)
         deadline = number(fields[4], where, "deadline", 0, ScenarioError, strict=True)
-        rows.append((fields[0], Row(where, x, y, {"deadline": deadline, "workload": workload})))
+        rows.append((fields[0], EntityRow(where, x, y, {"deadline": deadline, "workload": workload})))
     _check_count(path, first, num_tasks, len(rows), "task")
     return Part(
         path=str(path),
@@ -108,7 +108,7 @@ def read_agent_part(path: StrPath) -> Part:
             number(text, where, what, -math.inf, ScenarioError) for text, what in zip(fields[1:3], "xy", strict=True)
         )
         capacity = number(fields[3], where, "capacity", 0, ScenarioError, strict=True)
-        rows.append((fields[0], Row(where, x, y, {"capacity": capacity})))
+        rows.append((fields[0], EntityRow(where, x, y, {"capacity": capacity})))
     _check_count(path, first, num_robots, len(rows), "agent")
     return Part(path=str(path), robots=in_id_order(rows, "agent"), map=_map(first, header), name=Path(path).stem)
 

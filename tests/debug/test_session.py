@@ -15,7 +15,7 @@ from stepping import scripted
 
 from mrta_zoo.debug import Stepper, make_advisor
 from mrta_zoo.debug.screen import AROUND, prompt, screen
-from mrta_zoo.debug.session import COMMANDS, Session
+from mrta_zoo.debug.session import SESSION_COMMANDS, Session
 from mrta_zoo.debug.terminal import interact
 from mrta_zoo.errors import ActionError, ConfigError, MrtaError
 from mrta_zoo.generators import TaptcGenerator
@@ -86,8 +86,10 @@ def test_bad_commands(line: str, message: str) -> None:
 def test_every_command_is_explained() -> None:
     steps = session()
     steps.do("?")
-    assert [row.cells[0] for row in steps.listing().rows] == [command.usage for command in COMMANDS]
-    assert len({command.short for command in COMMANDS if command.short}) == sum(bool(c.short) for c in COMMANDS)
+    assert [row.cells[0] for row in steps.listing().rows] == [command.usage for command in SESSION_COMMANDS]
+    assert len({command.short for command in SESSION_COMMANDS if command.short}) == sum(
+        bool(c.short) for c in SESSION_COMMANDS
+    )
 
 
 @pytest.mark.parametrize(

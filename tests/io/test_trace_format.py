@@ -21,7 +21,7 @@ from mrta_zoo.io.trace_format import TraceJson
 from mrta_zoo.mission import Mission
 from mrta_zoo.rules import MaskRule
 from mrta_zoo.scenario import Scenario
-from mrta_zoo.trace import Choice, Trace, make
+from mrta_zoo.trace import Choice, Trace, apply_choice
 
 SCHEMA = Path(mrta_zoo.io.__file__).parent / "trace.schema.json"
 
@@ -34,7 +34,7 @@ def played(scenario: Scenario, rule: MaskRule, seed: int) -> Trace:
         task = choose(mission.mask(mission.actor))
         given = {task: float(rng.uniform(0, 1))} if rng.random() < 0.5 else None
         choice = Choice(None if rng.random() < 0.1 else task, given, task if rng.random() < 0.5 else None)
-        make(mission, choice, len(choices))
+        apply_choice(mission, choice, len(choices))
         choices.append(choice)
     return Trace(scenario, tuple(choices), rule, "any é", "greedy", MAX_SEED, 3, int(rng.integers(len(choices) + 1)))
 

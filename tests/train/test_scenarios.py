@@ -1,4 +1,4 @@
-"""Scenarios of updates: the same whoever draws them, and the right ones wherever a run goes on."""
+"""Scenarios of updates: the same whoever draw_inputs them, and the right ones wherever a run goes on."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.scenario_batch import ScenarioBatch
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.reinforce import Reinforce
-from mrta_zoo.train.scenarios import Drawn, draw, draws
+from mrta_zoo.train.scenarios import UpdateInput, draw_input, draw_inputs
 
 TINY = TrainConfig(
     network=NetworkConfig(embedding=8, heads=2), tasks=(10, 20), reference_tasks=10, min_robots=2, max_robots=3,
@@ -24,7 +24,7 @@ TINY = TrainConfig(
 )  # fmt: skip
 
 
-def same(one: Drawn, other: Drawn) -> bool:
+def same(one: UpdateInput, other: UpdateInput) -> bool:
     return (one.update, one.seed) == (other.update, other.seed) and all(
         torch.equal(getattr(one.scenarios, each.name), getattr(other.scenarios, each.name))
         for each in fields(ScenarioBatch)
@@ -33,9 +33,9 @@ def same(one: Drawn, other: Drawn) -> bool:
 
 
 def test_other_processes_draw_the_same_scenarios_and_are_missed_when_they_die() -> None:
-    ahead: Iterator[Drawn] = draws(TINY, None, 1, workers=2)
+    ahead: Iterator[UpdateInput] = draw_inputs(TINY, None, 1, workers=2)
     drawn = list(islice(ahead, 4))  # beyond the last update, too: a run may be made longer
-    assert all(same(*each) for each in zip(drawn, draws(TINY, None, 1), strict=False))
+    assert all(same(*each) for each in zip(drawn, draw_inputs(TINY, None, 1), strict=False))
     assert not same(drawn[0], drawn[1])
     for process in active_children():
         process.kill()
@@ -44,7 +44,7 @@ def test_other_processes_draw_the_same_scenarios_and_are_missed_when_they_die() 
 
 
 def test_processes_end_when_nobody_wants_more() -> None:
-    ahead = draws(TINY, None, 0, workers=1)
+    ahead = draw_inputs(TINY, None, 0, workers=1)
     next(ahead)
     (process,) = active_children()
     ahead.close()
@@ -56,10 +56,10 @@ def test_each_update_has_its_own_scenarios_whatever_came_before() -> None:
     run = Reinforce(TINY)
     for update in (0, 1, 1, 4, 2):  # as they come, after an update that failed, and resumed elsewhere
         run.update = update
-        assert same(run._drawn(), draw(TINY, None, update))
+        assert same(run._next_input(), draw_input(TINY, None, update))
 
 
 def test_a_given_generator_draws_the_scenarios() -> None:
     generator = UniformGenerator(tasks=(7, 7), robots=(2, 2))
-    scenarios = next(draws(TINY, generator, 0)).scenarios
+    scenarios = next(draw_inputs(TINY, generator, 0)).scenarios
     assert (len(scenarios), scenarios.num_tasks, scenarios.num_robots) == (2, 7, 2)

@@ -25,7 +25,7 @@ from mrta_zoo.scenario import Scenario
 from mrta_zoo.train.child_process import pool_of
 from mrta_zoo.train.config import TrainConfig
 from mrta_zoo.train.distribution import draw_size, training_generator
-from mrta_zoo.train.streams import Stream, random_numbers
+from mrta_zoo.train.random_streams import Stream, random_numbers
 from mrta_zoo.verify import verify
 
 ITERATIONS_PER_TASK = 24

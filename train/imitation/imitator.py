@@ -18,7 +18,7 @@ from mrta_zoo.train.gradients import accumulate_gradients
 from mrta_zoo.train.imitation.decision_pool import DecisionPool
 from mrta_zoo.train.imitation.decisions import PlanBatch, follow, turned
 from mrta_zoo.train.imitation.experts import ExpertPlan
-from mrta_zoo.train.streams import Stream, random_numbers
+from mrta_zoo.train.random_streams import Stream, random_numbers
 from mrta_zoo.wording import counted
 
 POOL_STEPS, POOL_PLANS = 96, 8192

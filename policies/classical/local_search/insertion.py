@@ -13,7 +13,7 @@ from mrta_zoo.policies.classical.local_search.tours import Tours, insert
 from mrta_zoo.scenario import FloatArray
 
 
-class Candidates(NamedTuple):
+class Insertions(NamedTuple):
     """The tasks that may be inserted, and what is known of where each fits best.
 
     Attributes:
@@ -54,7 +54,7 @@ def fill(
     over = False
     while not over:
         failed, over = False, True
-        candidates = Candidates(np.flatnonzero(tours.robot < 0), weight, shift, place)
+        candidates = Insertions(np.flatnonzero(tours.robot < 0), weight, shift, place)
         unvisited = len(candidates.task)
         for robot in range(m):
             if open_tours[robot]:
@@ -131,7 +131,7 @@ def _forget(free: npt.NDArray[np.int64], unvisited: int, task: int) -> int:
 
 
 @compiled
-def _choose(candidates: Candidates, unvisited: int, robot: int) -> tuple[int, float]:
+def _choose(candidates: Insertions, unvisited: int, robot: int) -> tuple[int, float]:
     """Of the first `unvisited` tasks that with the least weighted Shift, and this; (-1, inf) if none fits."""
     chosen, least = -1, np.inf
     for index in range(unvisited):
@@ -144,7 +144,7 @@ def _choose(candidates: Candidates, unvisited: int, robot: int) -> tuple[int, fl
 
 @compiled
 def _look_up_legs(
-    problem: Problem, tours: Tours, candidates: Candidates, unvisited: int, robot: int, first: int
+    problem: Problem, tours: Tours, candidates: Insertions, unvisited: int, robot: int, first: int
 ) -> None:
     """Update a tour's Shifts and positions for the visit just inserted at position `first`.
 

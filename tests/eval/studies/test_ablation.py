@@ -21,7 +21,7 @@ from mrta_zoo.eval.studies.ablation import CAPAM, QUESTIONS, REFERENCE, ROBOTS, 
 from mrta_zoo.eval.studies.held_out import HeldOut
 from mrta_zoo.generators import TaptcGenerator
 from mrta_zoo.train.config import TrainConfig
-from mrta_zoo.train.scenarios import draw
+from mrta_zoo.train.scenarios import draw_input
 
 TINY = shlex.split(
     "--only encoder,moments --updates 2 --paper-updates 4 --scenarios 2 --samples 2 --tasks 6 --held-out 2 --seeds 2"
@@ -71,7 +71,7 @@ def test_held_out_scenarios_are_none_of_those_trained_on() -> None:
     seen = {
         xy.tobytes()
         for update in range(50)
-        for xy in draw(config, TaptcGenerator((6, 6), (2, 2)), update).scenarios.task_xy.numpy()
+        for xy in draw_input(config, TaptcGenerator((6, 6), (2, 2)), update).scenarios.task_xy.numpy()
     }
     assert not seen & {each.task_xy.tobytes() for each in many}
     uniform = HeldOut(6, 2, ROBOTS).scenarios("uniform", 2)
