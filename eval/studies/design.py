@@ -43,7 +43,7 @@ class Arm:
     @property
     def networks(self) -> int:
         """How many networks are trained."""
-        return WAYS[self.config.sharing].count(self.config.max_robots, self.config.kinds)
+        return WAYS[self.config.sharing].networks(self.config.max_robots, self.config.kinds)
 
     @property
     def episodes(self) -> int:

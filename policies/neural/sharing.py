@@ -171,11 +171,11 @@ class Way(NamedTuple):
 
     Attributes:
         build: ``build(config, robots, kinds)`` gives fresh networks.
-        count: ``count(robots, kinds)`` says how many these are.
+        networks: ``networks(robots, kinds)`` says how many these are.
     """
 
     build: Callable[[NetworkConfig, int, Sequence[float]], Network]
-    count: Callable[[int, Sequence[float]], int]
+    networks: Callable[[int, Sequence[float]], int]
 
 
 WAYS: dict[Sharing, Way] = {

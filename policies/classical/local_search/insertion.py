@@ -54,14 +54,14 @@ def fill(
     over = False
     while not over:
         failed, over = False, True
-        candidates = Insertions(np.flatnonzero(tours.robot < 0), weight, shift, place)
-        unvisited = len(candidates.task)
+        insertions = Insertions(np.flatnonzero(tours.robot < 0), weight, shift, place)
+        unvisited = len(insertions.task)
         for robot in range(m):
             if open_tours[robot]:
                 for index in range(unvisited):
-                    task = candidates.task[index]
+                    task = insertions.task[index]
                     place[robot, task], shift[robot, task] = _best_position(problem, tours, task, robot)
-                best_task[robot], best_value[robot] = _choose(candidates, unvisited, robot)
+                best_task[robot], best_value[robot] = _choose(insertions, unvisited, robot)
         while True:
             winner = int(best_value.argmin())
             if best_value[winner] == np.inf:
@@ -70,24 +70,30 @@ def fill(
             position, least = _best_position(problem, tours, task, winner)
             if least > shift[winner, task]:  # there is less room than there was
                 place[winner, task], shift[winner, task] = position, least
-                best_task[winner], best_value[winner] = _choose(candidates, unvisited, winner)
+                best_task[winner], best_value[winner] = _choose(insertions, unvisited, winner)
                 continue
             inserted = insert(problem, tours, task, winner, position)
             if not inserted:  # the look-up was wrong by a rounding error
-                failed = True
-                position = -1
-                while not inserted and position < tours.size[winner]:
-                    position += 1
-                    inserted = insert(problem, tours, task, winner, position)
+                failed, position = True, _insert_anywhere(problem, tours, task, winner)
+                inserted = position >= 0
             if inserted:
                 over = not failed  # what has failed may fit now, by rounding: look everything up once more
-                unvisited = _forget(candidates.task, unvisited, task)
-                _look_up_legs(problem, tours, candidates, unvisited, winner, position)
+                unvisited = _forget(insertions.task, unvisited, task)
+                _look_up_legs(problem, tours, insertions, unvisited, winner, position)
             else:
                 shift[winner, task] = np.inf
             for other in range(m):
                 if other == winner or (inserted and best_task[other] == task):
-                    best_task[other], best_value[other] = _choose(candidates, unvisited, other)
+                    best_task[other], best_value[other] = _choose(insertions, unvisited, other)
+
+
+@compiled
+def _insert_anywhere(problem: Problem, tours: Tours, task: int, robot: int) -> int:
+    """Insert a task at the first position that takes it; which, or -1 if none does."""
+    for position in range(tours.size[robot] + 1):
+        if insert(problem, tours, task, robot, position):
+            return position
+    return -1
 
 
 @compiled
@@ -131,12 +137,12 @@ def _forget(free: npt.NDArray[np.int64], unvisited: int, task: int) -> int:
 
 
 @compiled
-def _choose(candidates: Insertions, unvisited: int, robot: int) -> tuple[int, float]:
+def _choose(insertions: Insertions, unvisited: int, robot: int) -> tuple[int, float]:
     """Of the first `unvisited` tasks that with the least weighted Shift, and this; (-1, inf) if none fits."""
     chosen, least = -1, np.inf
     for index in range(unvisited):
-        task = candidates.task[index]
-        value = candidates.shift[robot, task] * candidates.weight[task]
+        task = insertions.task[index]
+        value = insertions.shift[robot, task] * insertions.weight[task]
         if value < least:
             chosen, least = task, value
     return chosen, least
@@ -144,19 +150,19 @@ def _choose(candidates: Insertions, unvisited: int, robot: int) -> tuple[int, fl
 
 @compiled
 def _look_up_legs(
-    problem: Problem, tours: Tours, candidates: Insertions, unvisited: int, robot: int, first: int
+    problem: Problem, tours: Tours, insertions: Insertions, unvisited: int, robot: int, first: int
 ) -> None:
     """Update a tour's Shifts and positions for the visit just inserted at position `first`.
 
     Args:
         problem: the scenario.
         tours: the tours, with the visit.
-        candidates: whose rows of `robot` are updated.
+        insertions: whose rows of `robot` are updated.
         unvisited: how many of their tasks are left.
         robot: whose tour it is.
         first: position of the visit.
     """
-    shift, place = candidates.shift, candidates.position
+    shift, place = insertions.shift, insertions.position
     distance, pace, size = problem.distance, 1.0 / problem.speed[robot], tours.size[robot]
     before, ready = len(problem.deadline) + robot, 0.0
     if first > 0:
@@ -169,7 +175,7 @@ def _look_up_legs(
         after, after_leg = tours.tasks[robot, first + 1], tours.leg[robot, first + 1]
         after_slack = tours.max_shift[robot, first + 1] + tolerance
     for index in range(unvisited):
-        task = candidates.task[index]
+        task = insertions.task[index]
         if place[robot, task] == first:  # on the leg that is gone
             place[robot, task], shift[robot, task] = _best_position(problem, tours, task, robot)
             continue
