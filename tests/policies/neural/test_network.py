@@ -11,7 +11,7 @@ import torch
 from mrta_zoo import Scenario, mrta_v0
 from mrta_zoo.batch import BatchMission
 from mrta_zoo.errors import ConfigError
-from mrta_zoo.generators import Mixture, TaptcGenerator, UniformGenerator
+from mrta_zoo.generators import MixtureGenerator, TaptcGenerator, UniformGenerator
 from mrta_zoo.policies.neural.capam.capsule_encoder import CapsuleEncoder, scaled_laplacian
 from mrta_zoo.policies.neural.capam.config import NetworkConfig
 from mrta_zoo.policies.neural.capam.encoders import ENCODERS
@@ -36,7 +36,9 @@ CONFIGS = {
     "capam-plus-without-layers": replace(SMALL, decoder="candidates", decision_layers=0),
     "capam-plus-few-candidates": replace(SMALL, decoder="candidates", candidates=5, peers=1, decision_layers=1),
 }
-GENERATOR = Mixture((TaptcGenerator(tasks=(9, 20), robots=(1, 4)), UniformGenerator(tasks=(9, 20), robots=(1, 4))))
+GENERATOR = MixtureGenerator(
+    (TaptcGenerator(tasks=(9, 20), robots=(1, 4)), UniformGenerator(tasks=(9, 20), robots=(1, 4)))
+)
 
 
 def draw(count: int, seed: int = 0) -> list[Scenario]:
