@@ -27,7 +27,7 @@ from mrta_zoo.verify import verify
 
 RULES = get_args(MaskRule)
 ACTIVE, ASSIGNED, COMPLETED, MISSED = Status
-CHOOSABLE, TAKEN, DEADLINE_PASSED, TOO_LATE, _ = map(int, MaskReason)
+CHOOSABLE, TAKEN, DEADLINE_PASSED, TOO_LATE, *_ = map(int, MaskReason)
 
 
 @dataclass(frozen=True, slots=True)
