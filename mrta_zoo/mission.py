@@ -215,7 +215,8 @@ class Mission:
                 self.status[task] = _COMPLETED if completed else _MISSED
                 self.heading[robot] = -1
                 finished.append(Finished(robot, task, self.ready[robot], completed))
-        finished.sort(key=lambda event: (event.time, event.robot))
+        if len(finished) > 1:
+            finished.sort(key=lambda event: (event.time, event.robot))
         while self._passed < len(self._by_deadline):
             latest, task = self._by_deadline[self._passed]
             if latest >= time:

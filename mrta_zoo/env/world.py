@@ -107,8 +107,8 @@ class World:
         mission = self.mission
         robots, tasks = mission.reasons.shape
         self._reasons[:robots, :tasks] = mission.reasons
-        for robot, known in enumerate(map(mission.known, range(robots))):
-            if known is not mission:
+        for robot in range(robots):
+            if (known := mission.known(robot)) is not mission:
                 self._reasons[robot, :tasks] = known.reasons[robot]
         reasons = self._reasons.copy()
         masks = (reasons == _CHOOSABLE).view(np.int8)
@@ -131,10 +131,14 @@ class World:
 
     def mask(self, robot: int) -> npt.NDArray[np.int8]:
         """(max_tasks,) what `robot` may choose when next free; all 0 for one the scenario does not have."""
-        mask, mission = np.zeros(self.max_tasks, dtype=np.int8), self.mission
-        if robot < len(mission.ready):
-            reasons = mission.known(robot).reasons[robot]
-            mask[: len(reasons)] = reasons == _CHOOSABLE
+        mission = self.mission
+        if robot >= len(mission.ready):
+            return np.zeros(self.max_tasks, dtype=np.int8)
+        own = mission.mask(robot).view(np.int8)
+        if len(own) == self.max_tasks:
+            return own
+        mask = np.zeros(self.max_tasks, dtype=np.int8)
+        mask[: len(own)] = own
         return mask
 
     def seen_by(self, robot: int, mask: npt.NDArray[np.int8]) -> Any:
