@@ -48,7 +48,9 @@ class BatchMission:
         self.taken_by = torch.full((b, n), -1, dtype=torch.int64, device=device)
         self.order = torch.full((b, n), -1, dtype=torch.int64, device=device)
         self._decisions = 0
+        self._x, self._y = (each.contiguous() for each in s.task_xy.unbind(2))
         self.finish_if, self._allowed = self._look_ahead(s.robot_xy, self.ready, s.speed, s.capacity)
+        self._choices = (self._allowed & self.untaken[:, None]).sum(2)  # (B, M) how many tasks each could choose
         self._rows = torch.arange(b, device=device)
         self._advance()
 
@@ -84,10 +86,12 @@ class BatchMission:
         self.order[rows, task] = torch.where(live, self._decisions, self.order[rows, task])
         self._decisions += 1
         self.untaken[rows, task] = self.untaken[rows, task] & ~live
+        self._choices -= (self._allowed[rows, :, task] & live[:, None]).to(torch.int64)
 
         of_robot = (each[:, None] for each in (place, ready, s.speed[rows, robot], s.capacity[rows, robot]))
         finish_if, allowed = self._look_ahead(*of_robot)
         self.finish_if[rows, robot], self._allowed[rows, robot] = finish_if[:, 0], allowed[:, 0]
+        self._choices[rows, robot] = (allowed[:, 0] & self.untaken).sum(1)
         self._advance()
 
     def retire(self, where: Tensor) -> None:
@@ -97,6 +101,7 @@ class BatchMission:
         """
         robot = self.actor.clamp(min=0)
         self._allowed[self._rows, robot] &= ~where[:, None]
+        self._choices[self._rows, robot] *= ~where
         self._advance()
 
     def select(self, rows: Tensor) -> BatchMission:
@@ -140,14 +145,14 @@ class BatchMission:
             capacity: (B, R) capacity of each.
         """
         s, ready = self.scenarios, ready[..., None]
-        offset = s.task_xy[:, None] - place[:, :, None]
-        travel = travel_time(offset[..., 0], offset[..., 1], speed[..., None], _sqrt)
+        dx, dy = self._x[:, None] - place[..., :1], self._y[:, None] - place[..., 1:]
+        travel = travel_time(dx, dy, speed[..., None], _sqrt)
         finish = visit(ready, travel, s.workload[:, None] / capacity[..., None]).finishes
         return finish, may_choose(self.mask_rule, finish, ready, s.deadline[:, None])
 
     def _advance(self) -> None:
         """Retire robots that became free and have no choice, until each mission has an actor or is over."""
-        choice = (self._allowed & self.untaken[:, None]).any(2)
+        choice = self._choices > 0
         alive = ~self.retired
         # The first free robot that has a choice acts; those that are free before it and have none retire.
         when, actor = next_event(self.ready, ~(alive & choice), torch.where, _least)
