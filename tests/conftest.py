@@ -6,15 +6,18 @@ import os
 import signal
 import tempfile
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
-import hypothesis
 import pytest
 import torch
 
 os.environ.setdefault("SDL_VIDEODRIVER", "dummy")  # windows that need no display
-hypothesis.settings.register_profile("any machine", deadline=None)  # a busy one is no fault
-hypothesis.settings.load_profile("any machine")
+with suppress(ModuleNotFoundError):  # the environment of the integrations has none
+    from hypothesis import settings
+
+    settings.register_profile("any machine", deadline=None)  # a busy one is no fault
+    settings.load_profile("any machine")
 torch.set_num_threads(1)  # at the tests' sizes more threads only get in each other's way
 
 # Numba's cache does not see that a function called from another file has changed.
