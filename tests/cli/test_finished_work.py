@@ -162,7 +162,6 @@ def test_rows_are_printed_where_they_can_be_written_nowhere(
 def test_comparisons_pages_and_sessions_are_written_elsewhere(
     mission: Path, monkeypatch: pytest.MonkeyPatch, capsys: Captured
 ) -> None:
-    pytest.importorskip("plotly")
     vanishing("mrta_zoo.cli.compare", "compare", monkeypatch)
     printed, told = fails_late(capsys, "compare cases/m.csv --methods nearest,edf --out out/found.json")
     assert "nearest and edf do the same throughout" in printed or "They part" in printed

@@ -51,7 +51,6 @@ def test_plans_and_traces(files: Path, capsys: Captured) -> None:
     ):
         (files / "commands").write_bytes(MARK + b"log\n")
         assert main(line.split()) == 0, line
-    pytest.importorskip("plotly")
     for line in ("replay P.JSON --scenario M.CSV", "replay T.JSON", "replay M.CSV --policy P.JSON,T.JSON"):
         assert main(line.split()) == 0, line
     told = capsys.readouterr()
