@@ -118,7 +118,7 @@ class NeuralPolicy:
         return self.decide(observation).action
 
     @few_threads()
-    @torch.no_grad()
+    @torch.inference_mode()
     def decide(self, observation: Observation) -> Preferences:
         """The task to take, with probabilities. The encoder runs only when the tasks differ from the last call's.
 

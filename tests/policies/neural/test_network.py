@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 from dataclasses import fields, replace
 
 import numpy as np
@@ -195,6 +197,21 @@ def test_the_encoder_runs_once_a_mission() -> None:
     assert len(calls) == 3
     roll_out(network, ScenarioBatch.of(draw(3)), samples=4, generator=torch.Generator().manual_seed(0))
     assert len(calls) == 4
+
+
+@pytest.mark.parametrize("config", CONFIGS.values(), ids=CONFIGS)
+def test_a_network_that_has_decided_can_be_trained_copied_and_pickled(config: NetworkConfig) -> None:
+    policy = NeuralPolicy(network_of(config), PolicyInfo(network=config))
+    env = mrta_v0.env(generator=GENERATOR, max_tasks=20, max_robots=4)
+    env.reset(seed=0)
+    observation = env.last()[0]
+    chosen = policy.decide(observation)
+    batch = ScenarioBatch.of(draw(2))
+    scores = policy.network(policy.network.encode(Tasks.of_batch(batch)), DecisionStates.of_batch(BatchMission(batch)))
+    scores.max().backward()
+    assert any(parameter.grad is not None for parameter in policy.network.parameters())
+    for twin in (copy.deepcopy(policy), pickle.loads(pickle.dumps(policy))):
+        assert twin.decide(observation).action == chosen.action
 
 
 @pytest.mark.parametrize("encoder", ENCODERS)
