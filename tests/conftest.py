@@ -1,13 +1,10 @@
 """Puts this folder on the path, so that tests in subfolders can `from strategies import ...`."""
 
 import gc
-import hashlib
 import os
 import signal
-import tempfile
 from collections.abc import Iterator
 from contextlib import suppress
-from pathlib import Path
 
 import pytest
 import torch
@@ -19,11 +16,6 @@ with suppress(ModuleNotFoundError):  # the environment of the integrations has n
     settings.register_profile("any machine", deadline=None)  # a busy one is no fault
     settings.load_profile("any machine")
 torch.set_num_threads(1)  # at the tests' sizes more threads only get in each other's way
-
-# Numba's cache does not see that a function called from another file has changed.
-_SOURCES = sorted((Path(__file__).parent.parent / "policies" / "classical" / "local_search").glob("*.py"))
-_DIGEST = hashlib.sha256(b"".join(path.read_bytes() for path in _SOURCES)).hexdigest()[:16]
-os.environ["NUMBA_CACHE_DIR"] = str(Path(tempfile.gettempdir()) / f"mrta_zoo_numba_{_DIGEST}")
 
 
 @pytest.fixture

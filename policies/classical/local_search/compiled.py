@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import hashlib
 import logging
 import multiprocessing
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
+from pathlib import Path
 from typing import Any, TypeVar
 
 from numba import njit
+
+from mrta_zoo import rules
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -29,6 +34,9 @@ def compiled(function: Function) -> Function:
         return function
     try:
         made.enable_caching()
+        with suppress(AttributeError):  # a Numba that keeps its index otherwise
+            # Numba looks at the function's own file only, but what it compiles holds functions of other files, too.
+            made._cache._cache_file._source_stamp = (made._cache._cache_file._source_stamp, sources_digest())
         made._cache = _OptionalCache(made._cache)
     except (RuntimeError, OSError):  # the first is Numba's if there is no folder
         _warn_not_cached()
@@ -60,6 +68,13 @@ class _OptionalCache:
                 self._kept.save_overload(*arguments)
         except OSError:
             _warn_not_cached()
+
+
+@cache
+def sources_digest() -> str:
+    """SHA-256 of all files that have compiled functions, or functions that these call."""
+    files = [*sorted(Path(__file__).parent.glob("*.py")), Path(rules.__file__)]
+    return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 
 
 @cache

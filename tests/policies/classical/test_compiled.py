@@ -15,6 +15,7 @@ pytest.importorskip("numba")
 import numba.core.caching
 import numba.core.config
 
+from mrta_zoo.policies.classical.local_search import compiled as module
 from mrta_zoo.policies.classical.local_search.compiled import NOT_CACHED, _warn_not_cached, compiled
 
 
@@ -41,6 +42,14 @@ def test_it_is_kept_for_the_next_process(caplog: pytest.LogCaptureFixture) -> No
     assert (first(2), second(2)) == (4, 4)
     assert (hits(first), hits(second)) == (0, 1)
     assert caplog.messages == []
+
+
+def test_it_is_compiled_again_after_a_change_in_any_file(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert compiled(twice)(2) == 4
+    monkeypatch.setattr(module, "sources_digest", lambda: "of other sources")
+    after, again = compiled(twice), compiled(twice)
+    assert (after(2), again(2)) == (4, 4)
+    assert (hits(after), hits(again)) == (0, 1)
 
 
 def test_without_a_place_it_is_compiled_all_the_same_and_that_is_said_once(
