@@ -37,9 +37,9 @@ class Ablate:
     updates: int = USUAL.updates
     """Gradient steps of each run with the candidate decoder."""
     paper_updates: int = PAPER_UPDATES
-    """Gradient steps of each run with the paper's decoder, which takes about a fifth of the time a step."""
+    """Gradient steps of each run with the paper's decoder, which takes about a fifth of the time per step."""
     scenarios: int = USUAL.scenarios
-    """Scenarios an update."""
+    """Scenarios per update."""
     samples: int = USUAL.samples
     """Missions sampled of each scenario."""
     tasks: int = USUAL.tasks

@@ -17,7 +17,7 @@ from mrta_zoo.eval.studies.study import perform_study
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Share:
-    """Should robots share one policy? Train it shared, by kind of robot and one for each robot, and write a report.
+    """Should robots share one policy? Train it shared, one per kind and one per robot, and write a report.
 
     All else is equal: architecture, plain REINFORCE on TAPTC-like scenarios with 2 to 4 robots of capacities 1 and 2,
     and either the episodes or the decisions that a network learns from. After an interruption the same command goes on
@@ -31,13 +31,13 @@ class Share:
     out: Annotated[Path, arg(metavar="DIR")]
     """Folder for runs, rows, report and pictures; new, empty, or of the same command."""
     only: Annotated[str, arg(metavar="QUESTION,QUESTION")] = ",".join(QUESTIONS)
-    """What to compare at: equal episodes, or equal decisions a network."""
+    """What to compare at: equal episodes, or equal decisions per network."""
     seeds: int = 3
     """Runs of each kind, with seeds 0, 1, …; with one there are no intervals."""
     updates: int = USUAL.updates
     """Gradient steps of each run."""
     scenarios: int = USUAL.scenarios
-    """Scenarios an update, a multiple of 4; for equal decisions the shared network gets a quarter of them."""
+    """Scenarios per update, a multiple of 4; for equal decisions the shared network gets a quarter of them."""
     samples: int = USUAL.samples
     """Missions sampled of each scenario."""
     tasks: int = USUAL.tasks
